@@ -13,12 +13,20 @@ import workhold
 from bent_bodies import METAL, MODULUS, RATIO, block, need_elements, refine_mesh
 from workhold import InputError, Load, Result
 from workhold.bending import asking, meshing
-from workhold.bending.asking import BendingQuestion, HeldFixture, SolvedLoads, UnitLoads, find_bendings
+from workhold.bending.asking import (
+    BendingQuestion,
+    HeldFixture,
+    SolvedLoads,
+    UnitLoads,
+    find_bendings,
+    find_pressed_places,
+)
 from workhold.bending.elastic import ElasticBody, make_rigid_motions
 from workhold.bending.figures import Bending
 from workhold.bending.holding import BELOW, make_elastic_hold
 from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import RestingFaces, find_foot_corners, make_foot
+from workhold.bending.places import list_cutter_loads
 from workhold.bending.resting import find_rest
 from workhold.bending.shape import PrismShape
 from workhold.fixels.support_hardware import SupportPads
@@ -291,6 +299,19 @@ def test_a_load_on_a_plate_gives_no_more_than_it_is_pressed_in() -> None:
     assert give is not None
     column = 400.0 * HIGH / (MODULUS * np.pi * asking.CUTTER_RADIUS**2)
     assert 0.0 < give.value < 2.0 * column
+
+
+def test_a_load_and_what_bears_it_balance_on_a_plate() -> None:
+    result = strapped("plate")
+    hold = result[0].hold
+    assert isinstance(hold, StrappedHold)
+    solved, held = hold_part(result, hold, HIGH)
+    loads = list_cutter_loads(result.query, HIGH)
+    assert loads is not None
+    place = find_pressed_places(loads, solved.units)[0]
+    factors = solved.find_factors(held, place, np.eye(4))
+    wrenches = np.array([one.wrench for one in held.hold.columns]).T
+    assert np.abs(place.wrenches + wrenches @ factors[4:]).max() < 1e-6 * SIZE[0]
 
 
 def test_cells_count_in_the_error_on_a_plate_alone() -> None:

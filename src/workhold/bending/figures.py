@@ -201,7 +201,8 @@ class Bending:
         """
         found = []
         if self.yields and self.material.strength is not None:
-            would = "would yield" if self.stress.value >= self.material.strength else "might yield"
+            least = self.stress.value - self.stress.error
+            would = "would yield" if least >= self.material.strength else "might yield"
             found.append(
                 f"The part {would}: clamping stresses it by {self.stress.describe(unit)}, and {self.material.name} is "
                 f"reckoned to bear {unit.format_stress(self.material.strength)}. Clamp it less hard or where it is thicker, "
