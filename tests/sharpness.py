@@ -41,9 +41,12 @@ def changed(
     Raises
     ------
     LookupError
-        When no such number stands in the kernel: it has been changed, and its row in the table must be too.
+        When no such number stands in the kernel: it has been changed, and its row in the table must be too. Also
+        when the kernel's module has none of the names.
     """
     function: FunctionType = getattr(kernel, "py_func", kernel)  # type: ignore[assignment]
+    if names and not names.keys() & function.__globals__.keys():
+        raise LookupError(f"{function.__module__} has no {' or '.join(names)}")
     tree: ast.Module = copy.deepcopy(vars(function).get("tree")) or ast.parse(
         textwrap.dedent(inspect.getsource(function))
     )
