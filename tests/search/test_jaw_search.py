@@ -92,6 +92,18 @@ def test_part_longer_than_the_jaws_is_touched_as_far_as_they_reach():
     assert any("end of the jaws" in words for words in one.hold.warnings)
 
 
+def test_a_part_at_a_stop_reaches_to_that_end_without_a_warning():
+    """A stop at the end of the jaws is there for it; at the other end the part is warned of."""
+    for stop in ("left", "right"):
+        for width, warned in ((100.0, False), (152.0, True)):
+            result = held(
+                rectangle(width, 60),
+                vise(parallels=[20], stop=stop, jaw_width=152),
+                restrictions=Restrictions(angles=[(0, 0)]),
+            )
+            assert any("end of the jaws" in words for words in result[0].hold.warnings) == warned
+
+
 def test_turned_drawing_with_six_decimals_still_has_parallel_sides():
     turn = np.radians(17.0)
     matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])

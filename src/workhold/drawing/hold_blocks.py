@@ -280,7 +280,7 @@ def write_hold_loads(column: TextColumn, sheet: SetupSheet) -> None:
     assert isinstance(hold, JawHold)
     if not query.loads:
         return
-    write_heading(column, f"Loads, and the jaw force that each asks for, {unit.force}")
+    write_heading(column, f"Jaw force that each load asks for, {unit.force}")
     pairs = list(enumerate(zip(query.loads, hold.clamp_needed_each, strict=True), 1))
     pairs.sort(key=lambda one: -inf if one[1][1] is None else -one[1][1])
     for number, (load, need) in pairs[:MOST_LOADS]:

@@ -625,7 +625,10 @@ class JawSearch:
         if hold.above == 0.0:
             yield "nothing of the part stands above the jaws"
         ends = hold.fixed.ends, hold.moving.ends
-        if max(one[1] for one in ends) >= self.jaws.width or min(one[0] for one in ends) <= 0.0:
+        # A stop at the end of the jaws is there for the part to reach it.
+        is_left = hold.stop != "left" and min(one[0] for one in ends) <= 0.0
+        is_right = hold.stop != "right" and max(one[1] for one in ends) >= self.jaws.width
+        if is_left or is_right:
             yield "the part reaches to the end of the jaws or beyond"
 
 

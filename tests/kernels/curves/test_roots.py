@@ -411,7 +411,9 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
         )
         return psi, abs(value_two - value_one - target)
 
-    early = changed(write_crossings, write_monotone_roots=changed(write_monotone_roots, solve_for_target=first_guess))
+    early = changed(
+        write_crossings, write_monotone_roots=changed(write_monotone_roots, solve_for_target=first_guess)
+    )
     for _ in range(60):
         features, table = random_table(random)
         low = random.uniform(-4, 4)
