@@ -117,3 +117,30 @@ def test_raw_block_goes_from_the_command_to_the_sheet(run: Any, tmp_path: Any) -
 def test_raw_block_that_cannot_be_read_is_refused(run: Any, words: tuple[str, ...], message: str) -> None:
     outcome = run("design", RECTANGLE, "--toolkit", "plain-vise-6-inch", "--thickness", "12", *words)
     assert outcome.exit_code == 2 and message in outcome.stderr
+
+
+def test_settings_of_freecad_s_vise_are_shown(run: Any, tmp_path: Path) -> None:
+    """The origin is on the fixed jaw, at the top of the jaws and in their middle; other hardware has none."""
+    path = tmp_path / "result.json"
+    made = run("design", RECTANGLE, "--toolkit", "plain-vise-6-inch", "--out", str(path), "--thickness", "25")
+    assert made.exit_code == 0, made.stderr
+    first = json.loads(run("show", str(path), "1", "--json").stdout)["fixture"]
+    settings = json.loads(run("show", str(path), "1", "--freecad", "--json").stdout)["freecad"]
+    vise = json.loads(path.read_text())["toolkit"]
+    assert settings == {
+        "JawWidth": vise["jaw_width"],
+        "JawHeight": vise["jaw_height"],
+        "MaxOpening": vise["max_opening"],
+        "Opening": first["jaw_separation"],
+        "SeatHeight": first["parallels"],
+        "X": pytest.approx(first["pose"]["x"] - vise["jaw_width"] / 2),
+        "Y": first["pose"]["y"],
+        "Z": first["parallels"] - vise["jaw_height"],
+        "Angle": first["pose"]["theta_deg"],
+    }
+    assert settings["SeatHeight"] > 0.0 > settings["Z"]
+    assert f"SeatHeight {first['parallels']:g}" in run("show", str(path), "1", "--freecad").stdout
+    pegs = tmp_path / "pegs.json"
+    assert run("design", BRACKET, "--toolkit", "plate-20mm", "--best", "1", "--out", str(pegs)).exit_code == 0
+    refused = run("show", str(pegs), "1", "--freecad")
+    assert refused.exit_code == 2 and "two flat jaws" in refused.stderr

@@ -267,3 +267,10 @@ def test_jaw_force_too_small_is_told():
     assert not any(one.startswith("closed with") for one in enough.hold.warnings)
     assert sum(one.startswith(words) for one in less.hold.warnings) == 1
     assert enough.hold.safety_reached == pytest.approx(1e4 * less.hold.safety_reached)
+
+
+def test_a_part_that_stands_out_comes_before_one_sunk_between_the_jaws():
+    """Low parallels grip more of it, but nothing of it stands above the jaws."""
+    result = held(rectangle(), vise(jaw_height=44, parallels=[8, 32]))
+    assert [one.hold.above > 0.0 for one in result] == [True] * 4 + [False] * 4
+    assert result[0].hold.grip < result[-1].hold.grip

@@ -12,6 +12,7 @@ from running_server import SQUARE, WIDGET, RunningServer
 from workhold.files.part.load import list_builtin_parts, read_workpiece
 from workhold.files.toolkit_file import list_preset_names, load_toolkit
 from workhold.fixels.kinds import make_toolkit
+from workhold.model.jaw_hold import HOLD_FIGURES
 from workhold.model.quality import FIGURES
 
 BRACKET = Path(__file__).parents[2] / "examples" / "bracket.dxf"
@@ -168,7 +169,7 @@ def test_presets_are_told_and_can_be_asked_for(server: RunningServer) -> None:
 
 def test_figures_are_all_told(server: RunningServer) -> None:
     figures = server.client.get("/api/figures").json()
-    assert [figure["key"] for figure in figures] == [figure.key for figure in FIGURES]
+    assert [figure["key"] for figure in figures] == [figure.key for figure in (*FIGURES, *HOLD_FIGURES)]
 
 
 def test_there_is_nothing_elsewhere(server: RunningServer) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from attrs import frozen
 
-from workhold.cli.commands import make_option, print_remark, spread_option_groups
+from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, write_picture
 from workhold.cli.search_options import LoadOptions
@@ -41,6 +41,7 @@ class ShowTask:
     part : STEP file with the part's own shape, for the models.
     height : height of the part in mm in the models.
     on_supports : whether the models show the fixture on supports.
+    freecad : the settings of FreeCAD's vise, by name; None where they were not asked for.
     unit, printed : unit of lengths typed, and of lengths shown.
     """
 
@@ -52,6 +53,7 @@ class ShowTask:
     part: str | None
     height: float | None
     on_supports: bool
+    freecad: Mapping[str, float] | None
     unit: Unit
     printed: Unit
     as_json: bool
@@ -74,6 +76,9 @@ def show(
     *,
     draw: str | None = make_option(None, "FILE", "Draw it into this file, whose name ends in .svg or .png."),
     bodies: BodyOptions,
+    freecad: bool = make_flag(
+        None, "Also print the settings of a vise of FreeCAD's CAM workbench, for a plain vise.", "--freecad"
+    ),
     force: bool = FORCE,
     words: LoadOptions,
     unit: str | None = SHOWN_UNIT,
@@ -87,7 +92,7 @@ def show(
 
     Example: workhold show part.json 1 --draw setup.png --glb setup.glb
     """
-    asked = parse(result_file, read_rank(number), draw, bodies, force, words, unit, json_)
+    asked = parse(result_file, read_rank(number), draw, bodies, freecad, force, words, unit, json_)
     report(asked, ask(asked))
 
 
@@ -96,6 +101,7 @@ def parse(
     rank: int,
     draw: str | None,
     bodies: BodyOptions,
+    freecad: bool,
     force: bool,
     words: LoadOptions,
     unit: str | None,
@@ -109,6 +115,11 @@ def parse(
     height = read_optional_positive_length("--thickness", bodies.thickness, shown)
     result = read_result_with_rank(result_file, rank)
     printed = choose_printed_unit(unit, result.toolkit)
+    settings = None
+    if freecad:
+        from workhold.presenting.freecad_vise import make_freecad_settings
+
+        settings = make_freecad_settings(result[rank - 1], result.toolkit.flat_jaws)
     return ShowTask(
         result,
         rank,
@@ -118,6 +129,7 @@ def parse(
         bodies.part,
         height,
         bodies.supports,
+        settings,
         shown,
         printed,
         as_json,
@@ -151,6 +163,8 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
     result, rank = asked.result, asked.rank
     if not asked.as_json:
         print_fixture(result, rank, cases, asked.printed, asked.closing)
+        if asked.freecad is not None:
+            print_tables("", describe_freecad_settings(asked.freecad))
     if not result.complete:
         print_remark("the search for this result was interrupted; there may be better fixtures.")
     written = write(asked)
@@ -167,7 +181,14 @@ def report(asked: ShowTask, cases: Sequence[LoadCase]) -> None:
         complete=bool(result.complete),
         loads=[describe_load_case(case) for case in cases],
         written=[str(path) for path in written],
+        **({} if asked.freecad is None else {"freecad": asked.freecad}),
     )
+
+
+def describe_freecad_settings(settings: Mapping[str, float]) -> str:
+    """Return a sentence with the settings of FreeCAD's vise, in mm and degrees."""
+    said = ", ".join(f"{name} {value:g}" for name, value in settings.items())
+    return f"FreeCAD's vise, in mm and degrees: {said}. X, Y and Z are where the drawing's origin lies."
 
 
 def write(asked: ShowTask) -> list[Path]:

@@ -113,7 +113,7 @@ def parse_load(words: Mapping[str, Any], place: str, unit_scale: float) -> Load:
 
     Examples
     --------
-    >>> load_from_words({"force": "200", "at": "10,5", "direction": "30..60"}, "here", 1.0).directions
+    >>> parse_load({"force": "200", "at": "10,5", "direction": "30..60"}, "here", 1.0).directions
     (30.0, 60.0)
     """
     for key in words:

@@ -640,13 +640,15 @@ def is_square(theta: float) -> bool:
 def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
     """Return the sort key of an examined hold that is a fixture; better holds have smaller keys.
 
-    Unfit holds come last, then holds without full contact, then those beyond the vise's rating; the others
-    are in the query's ranking. Of a raw block those come first whose jaws reach least over the finished part's
-    lower side.
+    Unfit holds come last, then holds without full contact, then those beyond the vise's rating, then those of
+    which nothing stands above the jaws; the others are in the query's ranking. Of a raw block those come first
+    whose jaws reach least over the finished part's lower side.
     """
     hold = one.hold
     assert hold is not None
-    key: list[float] = [hold.is_unfit, not hold.full_contact, hold.is_beyond_rating]
+    # A part that ends below the jaws' top can be cut nowhere but from above, and hardly be measured.
+    is_sunk = hold.above == 0.0
+    key: list[float] = [hold.is_unfit, not hold.full_contact, hold.is_beyond_rating, is_sunk]
     jaws, raw = query.toolkit.flat_jaws, query.raw
     if raw is not None and jaws is not None:
         # What is left below the part is there to be gripped.

@@ -1,0 +1,46 @@
+"""The settings of a vise of FreeCAD's CAM workbench for a set-up between two flat jaws.
+
+FreeCAD's development version has vises as files with a set of variables (a VarSet). Such a vise has its origin on
+the fixed jaw's face, at the top of the jaws, in the middle of their width; its jaws close along -y.
+"""
+
+from __future__ import annotations
+
+from workhold.errors import InputError
+from workhold.fixels.jaw_pair import JawPair
+from workhold.model.fixture import Fixture
+from workhold.model.jaw_hold import JawHold
+
+__all__ = ["make_freecad_settings"]
+
+
+def make_freecad_settings(fixture: Fixture, jaws: JawPair | None) -> dict[str, float]:
+    """Return the variables of FreeCAD's vise by name, and where the part lies in it: X, Y, Z and Angle.
+
+    All are in mm, the angle in degrees. X, Y and Z are where the origin of the part's drawing lies, at the height
+    of the lower side of what the jaws hold. A length that the vise does not state is left out.
+
+    Raises
+    ------
+    InputError
+        For a fixture that two flat jaws do not hold, and for a vise that does not state how high its jaws are.
+    """
+    hold = fixture.hold
+    if jaws is None or not isinstance(hold, JawHold):
+        raise InputError("FreeCAD's vises have two flat jaws: their settings are for a plain vise alone.")
+    if jaws.height is None:
+        raise InputError(
+            "FreeCAD places a part from the top of the jaws: say how high they are (jaw_height)."
+        )
+    settings = {
+        "JawWidth": jaws.width,
+        "JawHeight": jaws.height,
+        "MaxOpening": jaws.max_opening,
+        "Opening": hold.opening,
+        "SeatHeight": hold.parallels,
+        "X": fixture.pose.x - jaws.width / 2,
+        "Y": fixture.pose.y,
+        "Z": -jaws.compute_top(hold.parallels),
+        "Angle": fixture.pose.theta_deg,
+    }
+    return {name: round(value, 6) + 0.0 for name, value in settings.items() if value is not None}
