@@ -178,7 +178,7 @@ def say_interrupted() -> None:
 
 
 def keep_what_is_found() -> None:
-    """Note that there are findings to keep, so that an interrupted search is given time to return them."""
+    """Set the mark that there are findings to keep; an interrupted search then has time to return them."""
     ending.keeping = True
 
 

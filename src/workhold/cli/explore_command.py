@@ -142,9 +142,9 @@ def parse(
 def read_for(
     diameters: Iterable[float | None], part: str, heights: Mapping[str, Sequence[float]], reading: PartOptions
 ) -> dict[float | None, LoadedPart]:
-    """Return the part by diameter of pegs in mm (None for the diameter given), read once for each.
+    """Read the part once for each diameter of pegs in mm, and return the parts by diameter.
 
-    Each remark is printed once.
+    None stands for the diameter that was given. Each remark is printed once.
     """
     loaded: dict[float | None, LoadedPart] = {}
     for one in dict.fromkeys(diameters):

@@ -222,9 +222,9 @@ def find_first_supported(
 def choose_supports_from_file(
     path: str, number: int, settings: dict[str, Any], loads: Sequence[Load] | None
 ) -> ChosenSupports:
-    """Return the set of three with this number from a file of supports.
+    """Return one set of three supports, chosen by its number, from a file of supports.
 
-    Raises InputError for a thickness, a jaw force or loads, which the file has decided already.
+    Raises InputError for a thickness, a jaw force or loads, because the file fixes them already.
     """
     from workhold.files.supports_file import read_supports
     from workhold.model.support_triples import ChosenSupports

@@ -217,8 +217,9 @@ def make_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
 
 
 def make_gripped_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
-    """Return the label of the number of a face that a flat jaw touches: inside the part; beside the face's
-    middle it costs least.
+    """Return the label with the number of a face that a flat jaw touches.
+
+    It is best placed inside the part, beside the middle of the face; places farther off cost more.
     """
     face = bench.gripped[face_number]
     hold = bench.fixture.hold

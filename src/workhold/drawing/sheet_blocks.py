@@ -324,7 +324,7 @@ def write_counting(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_jaws(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write how the holes of two jaws are counted."""
+    """Write how the holes of the two jaws are named and counted."""
     lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
     pitch_x, pitch_y = (lengths.format_short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]

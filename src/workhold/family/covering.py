@@ -369,7 +369,7 @@ def compute_curve(
 
 
 def list_curve_points(search: Search) -> Iterator[Point]:
-    """Yield the points of the curve, the smallest loss first."""
+    """Yield for each number of sets the least loss that so few allow, the smallest loss first."""
     fewest = len(search.table.words) + 1
     for place in sorted(search.covers):
         count = len(search.covers[place].sets)

@@ -179,7 +179,7 @@ def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
 
     Parameters
     ----------
-    load : loads what the work of the module with this name needs, before the fork.
+    load : called before the fork with a module's name; loads what the work of that module needs.
     work : does the work in the forked process, with standard input and output from the order; it must not
         return.
     """

@@ -54,10 +54,10 @@ class JawPair:
     stop_width: float
 
     def compute_top(self, parallels: float) -> float:
-        """Return the height in mm of the jaws' top above the lower side of a part on parallels of this height
-        (mm).
+        """Return how far in mm the top of the jaws lies above the lower side of a part.
 
-        It is inf where the jaws may have any height.
+        The part stands on parallels that are ``parallels`` mm high. The result is inf where the jaws may have
+        any height.
         """
         return inf if self.height is None else self.height - parallels
 

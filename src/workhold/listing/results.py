@@ -162,11 +162,10 @@ def add_table(result: Result, collector: ResultCollector, progress: Progress | N
 def make_best_result(
     kept: BestFixtures, work: SearchWork, is_part: bool = False, is_limited: bool = False
 ) -> Result:
-    """Return the result of a search for the best fixtures; with
-    ``is_part``, of all that may be among the best.
+    """Return the result of a search for the best fixtures.
 
-    Where fixtures were dropped, or with ``is_limited``, the total is not known; then only listed fixtures are
-    counted.
+    With ``is_part``, it holds every fixture that may still be among the best. Where fixtures were dropped, or with
+    ``is_limited``, the total is not known; then only listed fixtures are counted.
     """
     candidates, account = kept.finish()
     kept.has_dropped |= is_limited

@@ -73,7 +73,7 @@ def to_loops(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
 
 
 def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
-    """Return numbers as a tuple of floats; raise InputError where one is not finite."""
+    """Return heights as a tuple of floats; raise InputError where one is not finite."""
     numbers = tuple(convert_real(value) for value in values)
     if not all(map(isfinite, numbers)):
         raise InputError("a height of an upper face of the solid is not a length: give it in mm.")

@@ -91,7 +91,7 @@ class Stock(StockQuestion):
         Raises
         ------
         InputError
-            For an unknown name, and the errors of the class.
+            For a name that is no field, and for values that the class refuses.
         """
         if isinstance(value, Stock):
             return cls(value.side, value.top, value.shape, height if value.height is None else value.height)

@@ -182,9 +182,7 @@ def find_unit_size(figure: Figure, unit: Unit) -> float:
 
 
 def format_figure(figure: Figure, value: float, unit: Unit) -> str:
-    """Return a figure's value as text with the unit's sign, such as "0.031 mm"; for inf and NaN a word
-    without a sign.
-    """
+    """Return a figure's value as text with its unit, such as "0.031 mm"; inf and NaN are words without a unit."""
     behind = find_figure_unit(figure, unit) if isfinite(value) else ""
     return f"{format_figure_number(figure, value, unit)} {behind}".rstrip()
 

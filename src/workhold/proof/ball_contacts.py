@@ -337,7 +337,7 @@ def find_common_orientation(box: CandidateBox, one: int, other: int, psi: arb, s
 
     Their difference is n R(psi) a - c. The arm a leads from one peg to the other, and c is the distance of
     their lines along the normal n = (cos phi, sin phi). Divided by a_x it is cos u - (a_y / a_x) sin u - c /
-    a_x with u = psi - phi. So the separation in a_x does not count where a_y and c are 0. A step of the
+    a_x with u = psi - phi. ``separation`` enters through a_x alone, so it drops out where a_y and c are 0. A step of the
     interval Newton method in u makes psi smaller.
     """
     first, second = box.features[one], box.features[other]

@@ -186,7 +186,8 @@ def decide_rules(rules: Sequence[arb], contacts: Contacts, problem: Problem) -> 
     """Return True where all rules certainly hold, False where one is certainly broken, None where neither is
     certain.
 
-    ``rules`` are balls that must be positive; so must be those of the ends of features in ``contacts``.
+    Each ball in ``rules`` must be positive, and each contact in ``contacts`` must lie at least the contact margin
+    inside its feature.
     """
     ends = (end - arb(problem.contact_margin) for _, _, slacks in contacts[1:] for end in slacks)
     every = [*rules, *ends]
@@ -324,8 +325,10 @@ def locate_hull_edge(number: int, workpiece: Workpiece) -> tuple[Point, Point, a
 
 
 def find_drawn_end(end: HullEnd, workpiece: Workpiece) -> tuple[arb, arb, arb]:
-    """Return (centre x, centre y, radius) in mm of an end of a hull edge: of its arc as drawn, or of a
-    corner, whose radius is 0."""
+    """Return (centre x, centre y, radius) in mm of the arc at one end of a hull edge, as it is drawn.
+
+    A corner counts as an arc of radius 0.
+    """
     rounded_once = arb(end.center[0]), arb(end.center[1]), arb(end.radius)
     if end.radius == 0.0:
         return rounded_once

@@ -244,8 +244,8 @@ def bound_along_curve(frame: SingularFrame, well: list[arb], t: arb) -> tuple[li
 
 
 def invert_jacobian(slopes: Sequence[Sequence[arb]], middle: bool = False) -> Any:
-    """Return the inverse of the Jacobian of the first three equations over three coordinates; None where it
-    is singular.
+    """Return the inverse of the Jacobian of the first three equations by three coordinates; None where it
+    cannot be shown to be regular.
 
     With ``middle``, return instead an exact matrix near the inverse of the Jacobian's midpoint.
     """

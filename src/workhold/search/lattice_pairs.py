@@ -273,8 +273,7 @@ def cross_two_circles(between: Array, radius: Array, off: float) -> tuple[IntArr
 def solve_both_branches(
     square: Array, size: Array, off: Array | float, foot: Array | float, axis: Array
 ) -> tuple[IntArray, Array, Array]:
-    """Return the two points ``(foot - half) axis`` and ``(foot + half)
-    axis`` of M chords: indices, branches, places.
+    """Return the ends of M chords, ``(foot - half) axis`` and ``(foot + half) axis``: indices, branches, places.
 
     ``square`` (M,) is the square of the half chord in mm². Chords where it is negative beyond rounding are
     left out; where rounding makes it negative, the half chord is 0. The error of ``square`` is at most about

@@ -414,9 +414,10 @@ class ToolkitSearch:
         return [order[first:last] for first, last in pairwise(starts)]
 
     def make_crossing_block(self, arrangement: Arrangement, edges: Array, members: int) -> SearchBlock:
-        """Return the block that searches crossings of curves in adjacent cells, whose edges are given.
+        """Return the block that searches adjacent cells of orientation for crossings of curves.
 
-        ``members`` is about the number of curves that exist there; the block's cost follows from it.
+        ``edges`` are the limits of the cells. ``members`` is the approximate number of curves there; the block's
+        cost follows from it.
         """
         kernel, weight = KERNELS[arrangement.pegs]
         work = partial(

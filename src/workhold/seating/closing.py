@@ -254,8 +254,7 @@ class ClosingMotion:
     def find_leaving_at_stop(
         self, starts: Array, ends: Array, stopped: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """Return for each of N paths whether it met the stop and the part can be taken away at its end or its
-        start.
+        """Return for each of N paths whether it met the stop, and the part can be taken away at an end of the path.
 
         ``starts`` and ``ends`` (N, 4) are configurations, ``stopped`` (N,) is True for paths that met the
         stop. A part that can be taken away at the start counts as outside, wherever closing leads.

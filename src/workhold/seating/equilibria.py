@@ -281,7 +281,7 @@ def find_wall_manifolds(finder: ManifoldFinder) -> list[Manifolds]:
 
 
 def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
-    """Return the loose sets in which a part slides along a wall, with a hull edge on the wall.
+    """Return the sets of equilibria in which a part slides along a wall, with a hull edge on the wall.
 
     The clamp's tip presses a face parallel to that edge, between the edge's ends. The list is empty where the
     tip does not push towards the wall.

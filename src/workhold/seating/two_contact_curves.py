@@ -164,7 +164,7 @@ class JawCurves:
 
     @cached_property
     def pockets(self) -> int:
-        """How many of the rows are of one peg in a pocket; these come first."""
+        """Number of rows in which one peg sits in a pocket; these rows come before all others."""
         return int(self.rows[:, KIND].sum())
 
     @cached_property

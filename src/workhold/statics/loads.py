@@ -114,12 +114,12 @@ def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
 
 
 def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
-    """Return the peg forces per unit of g_x, g_y and moment of a load, with jaws of a stiffness, (..., P, 3).
+    """Return the peg forces (..., P, 3) per unit of a load's g_x, g_y and moment, between jaws of this stiffness.
 
     Parameters
     ----------
     free : (..., P, 3) peg forces per unit of load with a jaw that keeps its force.
-    closing : (..., P, M) peg forces per unit of the force of each jaw or clamp, H.
+    closing : (..., P, M) peg forces per unit of the force of each jaw or clamp.
     stiffness : stiffness of a jaw, divided by that of a contact; 0 returns ``free``, inf is a locked jaw.
     """
     if stiffness == 0:

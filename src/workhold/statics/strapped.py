@@ -143,7 +143,7 @@ class PressingTips:
         return self.part.compute_friction_wrenches(self.at, self.heights)
 
     def press(self, chosen: Sequence[int], part: StrappedPart | None = None) -> StrapsOnPart:
-        """Return a part with straps at some places, given by index; ``part`` is its own if None."""
+        """Return ``part``, or this object's own part if that is None, with straps at the places of these indices."""
         numbers = list(chosen)
         return StrapsOnPart(part or self.part, self.down[numbers], self.friction[numbers], self.coefficient)
 

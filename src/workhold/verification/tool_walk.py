@@ -245,8 +245,7 @@ class ToolWalk:
     def measure_distances(
         self, stretches: PathStretches, element: HoldingElement, boxed: NDArray[np.bool_]
     ) -> tuple[Array, Array]:
-        """Return (distances (N,), sagittas (N,)) in mm: of the stretches' chords from an element, and of the
-        stretches.
+        """Return in mm the distances (N,) of the stretches' chords from an element, and the stretches' sagittas (N,).
 
         Where ``boxed`` (N,) is True, the distance is that of the bounding box of the move's ends.
         """

@@ -42,7 +42,7 @@ FAMILY_NAME = "c3Rk8tWq5bXo1nZ7yVh0Pw"
 
 
 def describe_app(app: FastAPI) -> dict[str, Any]:
-    """Return the OpenAPI description of the application, made at the first call and kept there."""
+    """Return the OpenAPI description of the application; it is made at the first call and kept in the application."""
     if app.openapi_schema is None:
         schema = get_openapi(
             title=app.title,

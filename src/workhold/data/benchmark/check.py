@@ -1462,8 +1462,8 @@ def find_missing_fixtures(bench: Bench, listed: Listed, starts: int, seed: int) 
     """Return (1) at most five sentences on fixtures found here but not listed, (2) how many listed fixtures
     were found.
 
-    Nothing is searched where ``starts`` is 0, clamps have bodies or holes are blocked; the result is then an
-    empty list and 0.
+    Nothing is searched if ``starts`` is 0, if the clamps have bodies, or if holes are blocked; the result is then
+    an empty list and 0.
     """
     if starts == 0 or (bench.kit.get("travel") is not None) or bench.kit.get("blocked"):
         return [], 0

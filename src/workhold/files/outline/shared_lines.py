@@ -241,10 +241,10 @@ def lies_in_material(one: CurveCluster, loops: Sequence[JoinedLoop]) -> bool:
 
 
 def is_frame(number: int, parts: Sequence[DrawnPart]) -> bool:
-    """Return whether outlines that share lines are a frame such as a sheet's
-    border, with a whole part in a hole of theirs.
+    """Return whether outlines that share lines are a frame, such as a sheet's border, with a whole part in one of
+    their holes.
 
-    ``number`` is the ``nest`` of the outlines' loops; parts of the same nest do not count.
+    ``number`` is the ``nest`` of the outlines. Only parts of another nest count as lying in a hole.
     """
     for part in parts:
         if part.loops[0].nest != number:

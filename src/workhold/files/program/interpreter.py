@@ -407,11 +407,10 @@ class Interpreter:
         return axes | ROTARY | ({"P"} if once == "30" else set())
 
     def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Handle G52, G92, G92.1 or G92.2 if it leaves the zero as it is, and return the letters that have a
-        meaning.
+        """Handle G52, G92, G92.1 or G92.2, and return the axis letters used.
 
-        The zero stays as it is with G52 and 0, and when an offset is cancelled that was never set. G92 before
-        anything else says where the tip stands. Raises InputError for everything else.
+        Only codes that leave the zero as it is are accepted: G52 with zeros, G92.1 and G92.2 where no offset was
+        set, and a G92 before all motion, which says where the tip stands. Raises InputError for the others.
         """
         modes, axes, code = self.modes, values.keys() & {"X", "Y", "Z"}, codes["once"]
         self.change_motion(codes)

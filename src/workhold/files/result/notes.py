@@ -98,8 +98,9 @@ def has_wording(kind: type[Note]) -> bool:
 
 @cache
 def find_note_form(name: str) -> type[BaseModel]:
-    """Return the pydantic form of the data of a kind of
-    note, by the kind's name; further keys are allowed.
+    """Return the pydantic model that checks the data of notes of a kind, given the kind's name.
+
+    Keys that the kind does not know are allowed.
     """
     kind = KINDS[name]
     hints = get_type_hints(kind)

@@ -335,10 +335,10 @@ def check_table(columns: FixtureArrays, query: Query, path: Path, first: int = 0
 def find_faces_on_wall(
     query: Query, theta: NDArray[np.float64], position: NDArray[np.float64], path: Path
 ) -> NDArray[np.int64]:
-    """Return the faces (N, 2) at the ends of the contact with
-    a wall, in poses theta (N,) in radians and (N, 2) in mm.
+    """Return the faces (N, 2) at the two ends of the contact with a wall.
 
-    Raises InputError if there are fixtures (N > 0) although the workpiece cannot lie flush on a wall.
+    Poses are given by ``theta`` (N,) in radians and ``position`` (N, 2) in mm. Raises InputError if there are
+    fixtures (N > 0) although the workpiece cannot lie flush on a wall.
     """
     workpiece = query.workpiece
     if len(theta) and len(workpiece.hull_edges) == 0:

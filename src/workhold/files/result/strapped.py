@@ -185,8 +185,8 @@ class StrappedSeatPart(FormPart):
 
 
 def check_strapped(parts: Sequence[StrappedSeatPart], query: Query, path: Path) -> None:
-    """Raise InputError for seats of a type that the toolkit does not have, with unknown faces, or with pegs
-    beside their holes.
+    """Raise InputError if the toolkit has no seats of a seat's type, a face does not exist, or a peg is not in
+    its hole.
 
     Seats are counted from 1 in the message, which begins with ``path``.
     """

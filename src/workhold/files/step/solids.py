@@ -219,7 +219,7 @@ def choose_solid(solids: tuple[Solid, ...], number: int | str | None) -> Solid:
 
 
 def find_solid_by_name(solids: tuple[Solid, ...], name: str) -> Solid:
-    """Return the only solid of a name; if no name is spelled so, the only one in any mixture of capitals.
+    """Return the only solid with a name; if none has exactly this name, the only one that has it in other capitals.
 
     Raises InputError in three cases: no solid has the name (the message suggests similar names), several have
     it (the message gives their numbers), or the file has a single solid, so that no name is needed.

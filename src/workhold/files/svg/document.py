@@ -456,8 +456,9 @@ def refuse_media(media: str, place: str) -> None:
 
 
 def count_css_letters(text: str) -> int:
-    """Return the number of characters of CSS, leaving out embedded fonts and pictures, because reading them
-    takes little time.
+    """Return the number of characters of CSS, without embedded fonts and pictures of long texts.
+
+    What is embedded takes little time to read.
     """
     return len(text) if len(text) <= LONGEST else len(EMBEDDED.sub("", text))
 
