@@ -16,7 +16,15 @@ import workhold
 from workhold import Fence, Load, PlainVise, Plate, Query, StrapPlate
 from workhold.batch import tables
 from workhold.batch.run import ANY_PART, BatchState, ToolkitQuery
-from workhold.batch.tables import BEST, RESULTS, JobRow, list_table_names, write_tables
+from workhold.batch.tables import (
+    BEST,
+    FRICTION_FIGURES,
+    FRICTION_SETTINGS,
+    RESULTS,
+    JobRow,
+    list_table_names,
+    write_tables,
+)
 from workhold.files.replacing import is_own
 from workhold.statics.judging import are_unfit
 
@@ -27,15 +35,17 @@ PAIR = ToolkitQuery("pair", Query(ANY_PART, Plate(pitch=20, peg_radius=3, clamps
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return tmp_path_factory.mktemp("tables")
+    """A folder with a part that can be read, and one that cannot."""
+    path = tmp_path_factory.mktemp("tables")
+    (path / "bad.json").write_text("{")
+    loop = [[0, 0, 0], [70, 0, 0], [61, 44, 0], [25, 49, 0], [4, 38, 0]]
+    (path / "good.json").write_text(json.dumps({"units": "mm", "loops": [loop]}))
+    return path
 
 
 @pytest.fixture(scope="module")
 def batch(folder: Path) -> BatchState:
     """A part in every kind of toolkit, and one that cannot be read."""
-    (folder / "bad.json").write_text("{")
-    loop = [[0, 0, 0], [70, 0, 0], [61, 44, 0], [25, 49, 0], [4, 38, 0]]
-    (folder / "good.json").write_text(json.dumps({"units": "mm", "loops": [loop]}))
     parts = folder / "good.json", folder / "bad.json"
     return run_in(folder, *parts, queue=InlineQueue(), held_in=(COARSE, PLATE, FENCE, PAIR, IMPOSSIBLE))
 
@@ -90,9 +100,9 @@ def test_rows_of_what_friction_holds_say_whether_it_does(
     under, between = (one for one in rows_of(batch, place))
     assert under.row["state"] == "held" and under.row["fit"] is fit
     assert between.row["fit"] is not None
-    assert all(len(row["holes"].split()) == 3 and set(row) == set(BEST) for row in under.best)
-    for number, columns in enumerate((RESULTS, BEST)):
-        assert set((under.row, under.best[0])[number]) == set(columns)
+    of_best = {*BEST, *FRICTION_FIGURES, *FRICTION_SETTINGS}
+    assert all(len(row["holes"].split()) == 3 and set(row) == of_best for row in under.best)
+    assert set(under.row) == {*RESULTS, *FRICTION_FIGURES}
 
 
 def test_both_forms_have_the_same_rows(
