@@ -34,11 +34,7 @@ from workhold.kernels.curves.roots import (
     MULTIPLE,
     ROOT_PSI,
     ROOT_RADIUS,
-    WIDEST_RUN,
-    CurvePoint,
-    Span,
     evaluate_at_angle,
-    widen_last_root,
     write_crossings,
     write_monotone_roots,
 )
@@ -434,28 +430,3 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
             assert (off <= radius).all()
             worst = max(worst, (off / radius)[found[:, ROOT_RADIUS] < 1e-9].max(initial=0.0))
     assert worst > 0.5
-
-
-@pytest.mark.parametrize(
-    ("low", "width", "multiple", "joined"),
-    [
-        (1.0, 1e-13, 3, True),
-        (1.0, 0.9 * WIDEST_RUN, 3, True),
-        (1.0, 1.1 * WIDEST_RUN, 3, False),
-        (1.0, 1e-13, 4, False),
-        (1.0 + 1e-13, 1e-13, 3, False),
-    ],
-)
-def test_narrow_ranges_side_by_side_are_one_root(low, width, multiple, joined):
-    """They touch, are of one target, and stay narrow; the root then holds both, with its middle between their ends."""
-    reach = 5e-14
-    root, nothing = np.array([1.0 - reach, reach, 3.0]), CurvePoint(0.0, 0.0, 0.0, 0.0)
-    span = Span(low, low + width, nothing, nothing, nothing, nothing)
-    before = root.copy()
-    assert widen_last_root(span, multiple, root) == joined
-    if not joined:
-        assert (root == before).all()
-        return
-    assert root[ROOT_PSI] - root[ROOT_RADIUS] <= 1.0 - 2.0 * reach
-    assert root[ROOT_PSI] + root[ROOT_RADIUS] >= span.high
-    assert root[ROOT_RADIUS] < (span.high - 1.0 + 2.0 * reach) / 2.0 + 1e-14 and root[MULTIPLE] == 3.0
