@@ -61,9 +61,6 @@ HAIR = 1e-9
 # Radians. Ranges from which on chords of unknown slopes are bounded as discs, and to which they are split.
 WIDEST_DISC = 0.1
 NARROWEST_DISC = 1e-13
-# Largest width in radians of a root made of narrow ranges side by side that may take the same target. Where a
-# peg may pass the joint of two faces there are whole runs of them.
-WIDEST_RUN = 1e-12
 # Columns of a root: ROOT_PSI and ROOT_RADIUS in radians, MULTIPLE (k of the target offset + k period).
 ROOT_PSI, ROOT_RADIUS, MULTIPLE = range(3)
 STACK_LENGTH = 18
@@ -478,21 +475,6 @@ def is_vague(span: Span, slopes: Slopes, error: float) -> bool:
 
 
 @inner
-def widen_last_root(span: Span, multiple: int, root: Array) -> bool:
-    """Widen a root by the span above it, if they touch, take the same target, and stay narrow together.
-
-    Return whether the root was widened.
-    """
-    low = root[ROOT_PSI] - root[ROOT_RADIUS]
-    is_beside = abs(root[ROOT_PSI] + root[ROOT_RADIUS] - span.low) <= 2.0 * SAME
-    if root[MULTIPLE] != multiple or not is_beside or span.high - low > WIDEST_RUN:
-        return False
-    root[ROOT_PSI] = low + (span.high - low) / 2.0
-    root[ROOT_RADIUS] = (span.high - low) / 2.0 * (1.0 + 1e-15) + SAME
-    return True
-
-
-@inner
 def write_wide_roots(span: Span, first: int, last: int, roots: Array, found: int) -> int:
     """Write one root for each target from number ``first`` to ``last``, in the middle of a span, with half of
     it as radius.
@@ -502,8 +484,6 @@ def write_wide_roots(span: Span, first: int, last: int, roots: Array, found: int
     """
     if last - first >= roots.shape[0] - found:
         return -1
-    if first == last and found > 0 and widen_last_root(span, first, roots[found - 1]):
-        return found
     width = span.high - span.low
     for k in range(first, last + 1):
         roots[found, ROOT_PSI], roots[found, MULTIPLE] = span.low + width / 2.0, k
