@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from math import ceil
+from math import ceil, floor
 
 from attrs import frozen
 
@@ -18,6 +18,7 @@ __all__ = [
     "find_drawing_unit",
     "find_pixels_per_inch",
     "find_unit",
+    "format_rounded_down",
 ]
 
 # N in a pound-force: 0.453 592 37 kg under 9.806 65 m/s2, both exact by definition (1959 and 1901).
@@ -209,6 +210,15 @@ UNITS = {
     "in": INCH,
     '"': INCH,
 }
+
+
+def format_rounded_down(number: float) -> str:
+    """Return a number with two decimals, rounded down unless it is below the next hundredth by rounding alone.
+
+    >>> format_rounded_down(1.999), format_rounded_down(0.3 * 3 - 0.6)
+    ('1.99', '0.30')
+    """
+    return f"{floor(number * 100.0 + ROUNDING) / 100.0:.2f}"
 
 
 def find_unit(name: str) -> Unit:

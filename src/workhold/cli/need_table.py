@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import floor, inf
+from math import inf
 
 from workhold.cli.table import Table
 from workhold.presenting.figure_words import format_rounded
-from workhold.units import Unit
+from workhold.units import Unit, format_rounded_down
 
 __all__ = ["format_safety", "tabulate_needs"]
-
-# What counts as rounding, in hundredths.
-ROUNDING = 1e-9
 
 
 def tabulate_needs(
@@ -29,12 +26,11 @@ def tabulate_needs(
     the heading over the forces. Where a force is ``given``, in N, a column has how many ``times`` each load
     it holds; inf is shown as "any".
     """
-    with_times = given is not None and len(times) == len(needs) > 0
-    at = (f">times at {unit.format_force_alone(given)}",) if with_times and given is not None else ()
+    at = () if given is None or len(times) != len(needs) else (f">times at {unit.format_force_alone(given)}",)
     table = Table((">load", "name", f">{heading} {unit.force}", *at))
     for number, (name, need) in enumerate(zip(names, needs, strict=True), 1):
         text = "no force holds it" if need is None else format_rounded(need / unit.newtons, 1)
-        reached = (format_safety(times[number - 1]),) if with_times else ()
+        reached = (format_safety(times[number - 1]),) if at else ()
         table.add_row(str(number), name, text, *reached)
     return table
 
@@ -45,4 +41,4 @@ def format_safety(times: float) -> str:
     >>> format_safety(1.999), format_safety(inf)
     ('1.99', 'any')
     """
-    return "any" if times == inf else f"{floor(times * 100.0 + ROUNDING) / 100.0:.2f}"
+    return "any" if times == inf else format_rounded_down(times)

@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     from workhold.listing.identity import ShownEntries
     from workhold.model.fixture import Fixture
     from workhold.model.result import Result
+    from workhold.model.straps import StrappedHold
+    from workhold.supports.straps import StrapQuestion
 
-__all__ = ["describe_completeness", "tabulate_straps", "tabulate_strapped_fixture"]
+__all__ = ["describe_completeness", "list_strap_forces", "tabulate_straps", "tabulate_strapped_fixture"]
 
 
 def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Unit) -> Table:
@@ -90,14 +92,7 @@ def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Uni
     """
     from workhold.model.straps import StrappedHold
     from workhold.supports.straps import make_question
-    from workhold.supports.words_of_straps import (
-        describe_assumptions,
-        describe_program_need,
-        describe_program_safety,
-        list_remarks,
-        list_steps,
-        list_warnings,
-    )
+    from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings
 
     hold, query = fixture.hold, fixture.listing.result.query
     assert isinstance(hold, StrappedHold)
@@ -123,22 +118,37 @@ def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Uni
                 str(number), where, *(unit.format_number(value) for value in (*one.at, one.height))
             )
         tables += ["", straps]
-    if hold.clamp_needed_each:
-        needs = tabulate_needs(
-            (load.name for load in query.loads),
-            hold.clamp_needed_each,
-            "force of each strap",
-            unit,
-            hold.safety_each[: len(query.loads)],
-            query.jaw_force,
-        )
-        tables += ["", describe_assumptions(asked), needs]
-    if hold.program_need is not None and query.program is not None:
-        tables += ["", describe_program_need(hold.program_need, query.program, unit)]
-        tables += [words for words in [describe_program_safety(hold, asked, unit)] if words]
-        tables += [] if hold.clamp_needed_each else [describe_assumptions(asked)]
+    tables += list_strap_forces(hold, asked, unit)
     quality = fixture.quality
     error, edge = (unit.format_length(quality[key]) for key in ("location_error", "edge_distance"))
     tables.append(f"Location error {error}; nearest edge {edge}.")
     said = list_warnings(hold, fixture, asked, unit)
     return (*tables, *(f"{words[:1].upper()}{words[1:]}" for words in said))
+
+
+def list_strap_forces(hold: StrappedHold, asked: StrapQuestion, unit: Unit) -> list[Table | str]:
+    """Return the force of each strap that each load and the program need, as a table and sentences, with what is
+    assumed.
+    """
+    from workhold.supports.words_of_straps import (
+        describe_assumptions,
+        describe_program_need,
+        describe_program_safety,
+    )
+
+    out: list[Table | str] = []
+    if hold.clamp_needed_each:
+        needs = tabulate_needs(
+            (load.name for load in asked.loads),
+            hold.clamp_needed_each,
+            "force of each strap",
+            unit,
+            hold.safety_each[: len(asked.loads)],
+            asked.given_force,
+        )
+        out += ["", describe_assumptions(asked), needs]
+    if hold.program_need is not None and asked.program is not None:
+        out += ["", describe_program_need(hold.program_need, asked.program, unit)]
+        out += [words for words in [describe_program_safety(hold, asked, unit)] if words]
+        out += [] if hold.clamp_needed_each else [describe_assumptions(asked)]
+    return out

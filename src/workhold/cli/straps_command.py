@@ -236,14 +236,8 @@ def tabulate(
     found: StrappedHold, fixture: Fixture, rank: int, asked: StrapQuestion, unit: Unit
 ) -> list[Table | str]:
     """Return sentences and tables on how to set the straps up, and the force that each load needs."""
-    from workhold.cli.need_table import tabulate_needs
-    from workhold.supports.words_of_straps import (
-        describe_assumptions,
-        describe_program_need,
-        describe_program_safety,
-        list_remarks,
-        list_steps,
-    )
+    from workhold.cli.strap_tables import list_strap_forces
+    from workhold.supports.words_of_straps import list_remarks, list_steps
 
     short = unit.abbreviation
     out: list[Table | str] = [f"Straps over the locators of fixture {rank}", ""]
@@ -256,18 +250,4 @@ def tabulate(
                 str(number), plate.name_place(*one.hole), *(unit.format_number(value) for value in one.at)
             )
         out += ["", table]
-    if found.clamp_needed_each:
-        needs = tabulate_needs(
-            (load.name for load in asked.loads),
-            found.clamp_needed_each,
-            "force of each strap",
-            unit,
-            found.safety_each[: len(asked.loads)],
-            asked.given_force,
-        )
-        out += ["", describe_assumptions(asked), needs]
-    if found.program_need is not None and asked.program is not None:
-        out += ["", describe_program_need(found.program_need, asked.program, unit)]
-        out += [words for words in [describe_program_safety(found, asked, unit)] if words]
-        out += [] if found.clamp_needed_each else [describe_assumptions(asked)]
-    return out
+    return out + list_strap_forces(found, asked, unit)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import floor, inf
+from math import inf
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_
 from workhold.supports.straps import StrapQuestion
 from workhold.supports.straps_over_supports import contain_point, find_middle
 from workhold.supports.straps_past_tools import keep_clear
-from workhold.units import Unit
+from workhold.units import Unit, format_rounded_down
 
 __all__ = [
     "describe_missing_places",
@@ -78,7 +78,7 @@ def format_times(times: float) -> str:
     >>> format_times(2.349), format_times(inf)
     ('2.34 times', 'any number of times')
     """
-    return "any number of times" if times == inf else f"{floor(times * 100.0 + 1e-9) / 100.0:.2f} times"
+    return "any number of times" if times == inf else f"{format_rounded_down(times)} times"
 
 
 def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> str:
