@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from workhold import InputError, Workpiece
 from workhold.bending.elastic import ElasticBody, PointForces
 from workhold.bending.library import load_elements
-from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import PartMesh, curve_mesh, make_mesh
 from workhold.bending.shape import PrismShape
+from workhold.model.elastic_material import ElasticMaterial
 
 Array = NDArray[np.float64]
 MODULUS, RATIO = 70_000.0, 0.33

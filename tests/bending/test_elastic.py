@@ -27,11 +27,11 @@ from workhold import InputError, Workpiece
 from workhold.bending import meshing
 from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
 from workhold.bending.laying import Constraints, find_rigid_motion
-from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import find_foot_corners, make_foot
 from workhold.bending.shape import PrismShape
 from workhold.bending.surface import LATTICE
+from workhold.model.elastic_material import ElasticMaterial
 
 need_elements()
 

@@ -14,8 +14,8 @@ from workhold import Load, Result
 from workhold.bending import asking
 from workhold.bending.asking import BendingQuestion, find_bendings
 from workhold.bending.figures import Bending
-from workhold.bending.materials import find_material
 from workhold.bending.meshing import make_mesh
+from workhold.model.elastic_material import find_material
 from workhold.presenting.assembly import read_part_shape
 from workhold.presenting.bent import make_shape_to_bend
 

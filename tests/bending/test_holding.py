@@ -24,15 +24,12 @@ from workhold.bending.asking import (
     measure_distances,
 )
 from workhold.bending.elastic import ElasticBody
-from workhold.bending.figures import find_bending_figure
 from workhold.bending.holding import (
     ElasticHold,
-    PadsBelow,
     make_elastic_hold,
     make_strips,
     sample_rectangle,
 )
-from workhold.bending.materials import MATERIALS, ElasticMaterial, find_material
 from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import (
     BESIDE,
@@ -44,6 +41,8 @@ from workhold.bending.patches import (
     make_strip,
 )
 from workhold.bending.shape import PrismShape
+from workhold.model.elastic_material import MATERIALS, ElasticMaterial, find_material
+from workhold.model.part_bending import PadsBelow, find_bending_figure
 from workhold.statics.loads import find_touched_points
 from workhold.statics.pins import compute_deflections
 from workhold.units import INCH, MILLIMETRE
@@ -243,7 +242,7 @@ def test_only_faces_to_be_cut_count() -> None:
     assert top.clamp_distortion.at[2] == pytest.approx(HIGH)
     low = bent(result, jaw_force=3000.0, faces=("bottom",))
     assert low.clamp_distortion.at[2] == pytest.approx(0.0)
-    assert (whole.faces, top.faces, face.faces) == (None, "top", "bottom, faces 3")
+    assert (whole.faces, top.faces, face.faces) == ((), ("top",), (3, "bottom"))
     with pytest.raises(InputError, match="face 9 of plate does not exist"):
         bent(result, faces=(9,))
     other = workhold.Workpiece.from_points("other", [(200, 0), (300, 0), (300, 50)])

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 import pytest
 
 from bent_bodies import METAL, block, bodies, need_elements
-from workhold.bending.figures import Bending, BentPlace, LargestStress
+from workhold.bending.figures import Bending
 from workhold.drawing.bent_part import BentView, draw_bending
 from workhold.drawing.scene import LengthUnit
+from workhold.model.part_bending import BentPlace, LargestStress
 from workhold.units import MILLIMETRE
 
 need_elements()
@@ -26,17 +29,20 @@ def bent_at(place: tuple[float, float, float]) -> Bending:
     most = BentPlace(0.01, 0.001, place)
     pressed = np.zeros(len(surface.nodes), np.bool_)
     return Bending(
-        METAL,
-        1000.0,
-        False,
-        most,
-        None,
-        LargestStress(1.0, 0.1, place),
-        body.elements,
-        None,
-        surface,
-        moved,
-        pressed,
+        material=METAL,
+        thickness=HIGH,
+        jaw_force=1000.0,
+        is_stated=False,
+        stiffness=inf,
+        faces=(),
+        below=None,
+        clamp_distortion=most,
+        give=None,
+        stress=LargestStress(1.0, 0.1, place),
+        elements=body.elements,
+        surface=surface,
+        moved=moved,
+        pressed=pressed,
     )
 
 

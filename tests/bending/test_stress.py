@@ -11,10 +11,10 @@ from workhold import Workpiece
 from workhold.bending.asking import OF_STRESS, BendingQuestion, find_bendings, find_pressed
 from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
 from workhold.bending.figures import Bending
-from workhold.bending.materials import MATERIALS, find_material
 from workhold.bending.meshing import make_mesh
 from workhold.bending.shape import PrismShape
 from workhold.bending.stress import StressedSurface
+from workhold.model.elastic_material import MATERIALS, find_material
 from workhold.units import INCH, MILLIMETRE
 
 need_elements()

@@ -18,9 +18,8 @@ from attrs import define, evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
-from workhold.bending.figures import Bending, BentPlace, LargestStress
-from workhold.bending.holding import BELOW, ElasticHold, PadsBelow, make_elastic_hold
-from workhold.bending.materials import ElasticMaterial
+from workhold.bending.figures import Bending
+from workhold.bending.holding import BELOW, ElasticHold, make_elastic_hold
 from workhold.bending.meshing import make_mesh
 from workhold.bending.patches import BESIDE, RestingFaces, find_foot_corners, make_disc, make_foot
 from workhold.bending.places import CutterLoads, list_cutter_loads
@@ -32,7 +31,9 @@ from workhold.contact.problem import Progress
 from workhold.conventions import STATED_FORCE
 from workhold.errors import InputError
 from workhold.geometry.segment import Segment, measure_distance_to_segment
+from workhold.model.elastic_material import ElasticMaterial
 from workhold.model.fixture import Fixture
+from workhold.model.part_bending import BentPlace, LargestStress, PadsBelow, describe_cut_faces
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.straps import StrappedHold
@@ -174,6 +175,7 @@ class HeldFixture:
     numbers : for each column of the hold, its number in :class:`UnitLoads`.
     reads : for each level of the hold's locators, the numbers of its readings in :class:`UnitLoads`.
     force, is_stated : jaw force in N, and whether it is a convention because nobody said it.
+    below : the pads under the part and the clamp on top; None without.
     rest : where the part touches the plate that straps press it on; None without straps on a plate.
     """
 
@@ -182,6 +184,7 @@ class HeldFixture:
     reads: list[list[int]]
     force: float
     is_stated: bool
+    below: PadsBelow | None = None
     rest: PlateRest | None = None
 
     def estimate_error(self, value: float, change: float) -> float:
@@ -282,7 +285,7 @@ def find_bendings(
             faces=faces,
         )
         reads = [units.add(level) for level in hold.locating]
-        held.append(HeldFixture(hold, units.add(hold.columns), reads, force, is_stated))
+        held.append(HeldFixture(hold, units.add(hold.columns), reads, force, is_stated, asked.below.get(row)))
     loads = list_cutter_loads(query, height)
     places = [] if loads is None else find_pressed_places(loads, units)
     second, third = (SolvedLoads(ElasticBody(mesh, asked.material, order), units) for order in (2, 3))
@@ -356,17 +359,20 @@ def make_bending(
             load = -row
         given = BentPlace(value, one.estimate_error(value, change), tuple(there), line, tool, load)
     return Bending(
-        asked.material,
-        one.force,
-        one.is_stated,
-        most,
-        given,
-        find_largest_stress(one, moved, pressed | beside_edges, stressed, second),
-        third.body.elements,
-        describe_faces(asked.faces),
-        surface,
-        moved,
-        pressed,
+        material=asked.material,
+        thickness=asked.find_part_height(query),
+        jaw_force=one.force,
+        is_stated=one.is_stated,
+        stiffness=asked.stiffness,
+        faces=asked.faces,
+        below=one.below,
+        clamp_distortion=most,
+        give=given,
+        stress=find_largest_stress(one, moved, pressed | beside_edges, stressed, second),
+        elements=third.body.elements,
+        surface=surface,
+        moved=moved,
+        pressed=pressed,
     )
 
 
@@ -658,13 +664,6 @@ def refuse_unknown_faces(faces: Sequence[int | str], workpiece: Workpiece) -> No
             )
 
 
-def describe_faces(faces: Sequence[int | str]) -> str | None:
-    """Return the faces to be cut in words; None where there are none, which stands for all."""
-    numbers = ", ".join(str(face) for face in faces if isinstance(face, int))
-    level = [str(face) for face in faces if isinstance(face, str)]
-    return ", ".join([*level, *([f"faces {numbers}"] if numbers else [])]) or None
-
-
 def find_cut_nodes(surface: Surface, faces: Sequence[int | str], workpiece: Workpiece, height: float) -> Mask:
     """Return the mask (N,) of the surface's nodes on the faces to be cut; True for all where no face is
     named.
@@ -685,7 +684,9 @@ def find_cut_nodes(surface: Surface, faces: Sequence[int | str], workpiece: Work
         if isinstance(face, int):
             found |= upright & (measure_distances(segments[face], nodes[:, :2]) < ON_FACE)
     if not found[surface.faces].all(axis=1).any():
-        raise InputError(f"nothing of {workpiece.name} lies on what is to be cut ({describe_faces(faces)}).")
+        raise InputError(
+            f"nothing of {workpiece.name} lies on what is to be cut ({describe_cut_faces(faces)})."
+        )
     return found
 
 

@@ -25,9 +25,9 @@ from attrs import define, field, frozen
 from numpy.typing import NDArray
 
 from workhold.bending.library import load_elements
-from workhold.bending.materials import ElasticMaterial
 from workhold.bending.meshing import PartMesh
 from workhold.bending.surface import LATTICE, Footing, Surface
+from workhold.model.elastic_material import ElasticMaterial
 
 __all__ = ["ElasticBody", "PointForces", "make_rigid_motions"]
 

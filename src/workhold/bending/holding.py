@@ -29,6 +29,7 @@ from workhold.errors import InputError
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
+from workhold.model.part_bending import PadsBelow
 from workhold.model.straps import StrappedHold
 from workhold.model.support_request import find_usual_pad_radius
 from workhold.model.workpiece import Workpiece
@@ -36,32 +37,12 @@ from workhold.statics.contact_matrix import TouchableFeatures
 from workhold.statics.loads import compute_shared_forces, find_contacts_on_part, find_touched_points
 from workhold.statics.pins import PinRuns, compute_deflections, find_runs_on_solid
 
-__all__ = ["BELOW", "ElasticHold", "PadsBelow", "make_elastic_hold"]
+__all__ = ["BELOW", "ElasticHold", "make_elastic_hold"]
 
 Array = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
 # Of a wrench (F_x, F_y, F_z, M_x, M_y, M_z): what is borne from below.
 BELOW = [2, 3, 4]
-
-
-@frozen(eq=False)
-class PadsBelow:
-    """Three pads under the part and a clamp on top of it, in the part's coordinates.
-
-    Parameters
-    ----------
-    pads : (3, 2) centres of the pads in mm.
-    pad_radius : in mm.
-    clamp : (3,) point in mm where the clamp's tip presses on the part.
-    tip_radius : in mm.
-    force : force of the clamp in N.
-    """
-
-    pads: Array
-    pad_radius: float
-    clamp: Array
-    tip_radius: float
-    force: float
 
 
 @frozen(eq=False)

@@ -16,8 +16,8 @@ import numpy as np
 from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.bending.materials import ElasticMaterial
 from workhold.bending.surface import LATTICE, Surface, number_of
+from workhold.model.elastic_material import ElasticMaterial
 
 __all__ = ["BESIDE_EDGES", "StressedSurface"]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,7 +12,19 @@ from attrs import frozen
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
 from workhold.cli.options import SHOWN_UNIT, ResultArgument, read_rank, read_result_with_rank
-from workhold.cli.outputs import FORCE, JSON, print_json, read_picture_path, refuse_output, write_picture
+from workhold.cli.outputs import (
+    FORCE,
+    JSON,
+    STANDARD_OUTPUT,
+    choose_output_form,
+    print_json,
+    read_picture_path,
+    refuse_both,
+    refuse_output,
+    refuse_result_file,
+    write_output,
+    write_picture,
+)
 from workhold.cli.progress import show_progress
 from workhold.cli.setup_sheets import PART_FILE
 from workhold.cli.table import Table, print_tables
@@ -23,7 +36,6 @@ from workhold.cli.values import (
     read_unit,
 )
 from workhold.errors import InputError
-from workhold.model.straps import StrappedHold
 
 if TYPE_CHECKING:
     from workhold.bending.asking import BendingQuestion
@@ -86,6 +98,12 @@ class BentWords:
         "LENGTH",
         "Warn of a part that bends or gives by more; one that would yield is warned of anyway.",
     )
+    out: str | None = make_option(
+        OUTPUT,
+        "FILE",
+        "Write the result with these figures into this file (.json, .csv or .npz); with --rank-by those that were bent "
+        "come first in it.",
+    )
     draw: str | None = make_option(
         OUTPUT, "FILE", "Draw the first of these, coloured and bent, into this file (.png or .svg)."
     )
@@ -126,10 +144,15 @@ def bend(
         if model.suffix.lower() != ".glb":
             raise InputError(f"--glb {model} is not the name of a GLB file: let the name end in .glb.")
         refuse_output(model, (result_file, words.part), said.force)
+    form = choose_output_form(said.out, None)
+    refuse_both(json_, said.out)
+    if said.out is not None and said.out != STANDARD_OUTPUT:
+        refuse_result_file(said.out, form, (result_file, words.part), said.force)
     limit = read_optional_positive_length("--bend", said.bend, shown)
     asked = read_question(words, shown)
     figure = read_figure(said.rank_by)
-    result, rows = read_rows(result_file, rank, read_optional_count("--best", said.best))
+    best = read_optional_count("--best", said.best)
+    result, rows = read_rows(result_file, rank, best, said.out is not None)
     from workhold.presenting.assembly import read_part_shape
     from workhold.presenting.bent import make_shape_to_bend
 
@@ -152,22 +175,39 @@ def bend(
     ranked = rank_bendings(list(zip(rows, found, strict=False)), figure)
     printed = choose_printed_unit(unit, result.toolkit)
     written = write_first(ranked, result, picture, model, printed)
-    if json_:
+    order = ""
+    if said.out is not None and ranked:
+        bent = result.add_bending({row: one.to_figures() for row, one in ranked}, figure)
+        write_output(bent, said.out, form)
+        if said.out != STANDARD_OUTPUT:
+            written.append(said.out)
+            order = "" if figure is None else f" There the fixtures are listed in the order of {figure}."
+    if said.out == STANDARD_OUTPUT:
+        pass
+    elif json_:
         fixtures = [{"rank": row + 1, **one.to_data()} for row, one in ranked]
         print_json(fixtures=fixtures, complete=not cancel.is_set(), written=written)
     else:
-        print_tables(*tabulate(ranked, result, asked, printed), *(f"Written to {path}." for path in written))
-    for row, one in ranked:
-        for sentence in one.list_warnings(limit, printed):
-            print_remark(f"fixture {row + 1}: {sentence}")
+        print_tables(
+            *tabulate(ranked, result, asked, printed),
+            *(f"Written to {path}.{order if path == said.out else ''}" for path in written),
+        )
+    print_warnings(ranked, limit, printed)
     if cancel.is_set():
         raise typer.Exit(INTERRUPTED)
+
+
+def print_warnings(ranked: list[tuple[int, Bending]], limit: float | None, unit: Unit) -> None:
+    """Print the warnings of all fixtures, of figures above ``limit`` in mm and of parts that would yield."""
+    for row, one in ranked:
+        for sentence in one.list_warnings(limit, unit):
+            print_remark(f"fixture {row + 1}: {sentence}")
 
 
 def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
     """Return the question of bending from the options as typed; lengths without a unit are in ``unit``."""
     from workhold.bending.asking import BendingQuestion
-    from workhold.bending.materials import find_material
+    from workhold.model.elastic_material import find_material
     from workhold.statics.loads import read_jaw_stiffness
 
     faces = tuple(
@@ -186,36 +226,30 @@ def read_question(words: BendWords, unit: Unit) -> BendingQuestion:
 
 def read_figure(name: str | None) -> str | None:
     """Return the key of the figure to rank by; None where none is given."""
-    from workhold.bending.figures import find_bending_figure
+    from workhold.model.part_bending import find_bending_figure
 
     return None if name is None else find_bending_figure(name).key
 
 
-def read_rows(result_file: str, rank: int | None, best: int | None) -> tuple[Result, list[int]]:
+def read_rows(
+    result_file: str, rank: int | None, best: int | None, is_whole: bool
+) -> tuple[Result, list[int]]:
     """Return the result in a file, and the indices, from 0, of the fixtures to bend.
 
     The fixture is that of ``rank`` where given, else the first ``best`` fixtures, or 20 for None; seats for which
-    no straps were found are left out.
+    no straps were found are left out. ``is_whole`` says that all of the file is read, to be written again.
     """
-    if rank is not None:
+    if rank is not None and not is_whole:
         return read_result_with_rank(result_file, rank), [rank - 1]
     from workhold.files.result.reader import read_result
+    from workhold.presenting.bent import list_rows_to_bend
 
     result = read_result(result_file)
-    if not len(result):
-        raise InputError(f"{result_file} lists no fixture: there is nothing to bend.")
-    rows = []
-    for row in range(len(result)):
-        hold = result[row].hold
-        if not isinstance(hold, StrappedHold) or hold.straps:
-            rows.append(row)
-        if len(rows) == (best or USUAL):
-            break
-    if not rows:
-        raise InputError(
-            f"no seat of {result_file} has straps, so that nothing bends its part: design it again with a load."
-        )
-    return result, rows
+    if rank is not None:
+        if rank > len(result):
+            raise InputError(f"{result_file} lists {len(result)} fixtures: there is no fixture {rank}.")
+        return result, [rank - 1]
+    return result, list_rows_to_bend(result, best or USUAL)
 
 
 def rank_bendings(found: list[tuple[int, Bending]], figure: str | None) -> list[tuple[int, Bending]]:
@@ -290,7 +324,7 @@ def tabulate(
         )
     )
 
-    def place(at: tuple[float, float, float]) -> str:
+    def place(at: Sequence[float]) -> str:
         """Return a point as text in the unit."""
         return ", ".join(unit.format_number(value, max(unit.decimals - 2, 1)) for value in at)
 

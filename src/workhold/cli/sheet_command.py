@@ -170,11 +170,6 @@ def parse(result_file: str, rank: int, path: Path, words: SheetOptions, unit: st
     settings["jaw"] = read_jaw_stiffness(settings["jaw"])
     settings["day"] = settings["day"] or date.today()
     given = read_asked_loads(words.load, words.loads, shown)
-    if words.part is not None and ending not in STEP_ENDINGS and words.material is None:
-        raise InputError(
-            "--part is for the part's shape in a .step, and for how far it bends: give --material, or leave it "
-            "out."
-        )
     on_supports = is_supports_file(result_file)
     for_cam = ending in MODEL_ENDINGS
     has_room = not for_cam or ending in STEP_ENDINGS
@@ -185,10 +180,17 @@ def parse(result_file: str, rank: int, path: Path, words: SheetOptions, unit: st
 
 def write(asked: SheetTask) -> None:
     """Write the sheet, or the set-up for a CAM system."""
+    from workhold.presenting.assembly import STEP_ENDINGS
     from workhold.presenting.papers import write_model, write_paper
 
     result, rank, beside, loads = read_sheet_content(asked)
     settings, words = asked.settings | beside, asked.words
+    is_bent = words.material is not None or result[rank - 1].bent is not None
+    if words.part is not None and not is_bent and asked.path.suffix.lower() not in STEP_ENDINGS:
+        raise InputError(
+            "--part is for the part's shape in a .step, and for how far it bends: give --material, or leave it "
+            "out."
+        )
     if words.part is not None:
         from workhold.presenting.assembly import read_part_shape
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.fixture import Fixture
+    from workhold.model.part_bending import BendingFigures
     from workhold.model.result import Result
     from workhold.statics.bent_pegs import BentPegs
     from workhold.statics.loads import LoadCase
@@ -228,8 +229,9 @@ def print_fixture(
     from workhold.presenting.figure_words import find_edgeless_distance
 
     fixture, toolkit = result[rank - 1], result.toolkit
+    bending = [] if fixture.bent is None else list_bending_sentences(fixture.bent, toolkit.moving.noun, unit)
     if fixture.hold is not None:
-        print_tables(*tabulate_fixture_setup(fixture, toolkit, rank, len(result), unit))
+        print_tables(*tabulate_fixture_setup(fixture, toolkit, rank, len(result), unit), *bending)
         return
     force, longest = result.query.jaw_force, find_edgeless_distance(result.workpiece, toolkit)
     quality = tabulate_quality(fixture, toolkit.moving.noun, unit, force, longest)
@@ -243,9 +245,17 @@ def print_fixture(
         print_tables(*describe_steps_by_hand(rank, result, unit))
     print_tables(
         *describe_bending(result, rank, unit, closing[0]),
+        *bending,
         *describe_program_clearances(result, rank, unit, *closing),
         *tabulate_load_cases(cases, fixture, toolkit, unit),
     )
+
+
+def list_bending_sentences(bent: BendingFigures, mover: str, unit: Unit) -> list[str]:
+    """Return sentences on how far a fixture bends its part, with a warning where the part would yield."""
+    said = f"How far the part, of {bent.material.words}, is bent:"
+    cautions = (f"Beware: {sentence}" for sentence in bent.list_warnings(None, unit))
+    return ["", said, *bent.list_sentences(mover, unit), *cautions]
 
 
 def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:

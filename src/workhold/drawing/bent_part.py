@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from workhold.bending.figures import Bending
 from workhold.drawing.panel import TextColumn
 from workhold.drawing.scene import UNITS_PER_MM, Box, LengthUnit, Scene, measure_text
+from workhold.model.part_bending import BendingFigures
 
 __all__ = [
     "LARGEST_SHOWN",
@@ -43,6 +44,10 @@ PRESSED = np.array([0.72, 0.72, 0.72])
 # The light that falls on what is seen from the side, of what falls on what is seen from above.
 SHADED = 0.25
 STEPS = 5
+NO_PICTURE = (
+    "These figures are those of the result file. A picture beside them takes the extra bending and, of a solid, its STEP "
+    "file."
+)
 # Size of a picture by itself, in mm.
 PICTURE = (180.0, 130.0)
 
@@ -218,9 +223,12 @@ def draw_scale(
 
 
 def draw_bent_page(
-    scene: Scene, box: Box, bending: Bending, lengths: LengthUnit, words: Sequence[str]
+    scene: Scene, box: Box, bending: BendingFigures, lengths: LengthUnit, words: Sequence[str]
 ) -> None:
-    """Fill a page box of a setup sheet: sentences ``words``, and below them the bent part."""
+    """Fill a page box of a setup sheet: sentences ``words``, and below them the bent part.
+
+    There is no picture of figures without a mesh, as a result file has them.
+    """
     column = TextColumn(scene.group("words"), box.x0, box.y0, box.width)
     column.write_paragraph("How clamping bends the part", 16, bold=True)
     column.y += 6.0
@@ -229,6 +237,9 @@ def draw_bent_page(
     )
     for sentence in (*words, material):
         column.write_paragraph(sentence, 12)
+    if not isinstance(bending, Bending):
+        column.write_paragraph(NO_PICTURE, 12)
+        return
     draw_bent_part(scene, Box(box.x0, column.y + 16.0, box.x1, box.y1 - 10.0), bending, lengths)
 
 

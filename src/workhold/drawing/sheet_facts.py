@@ -13,7 +13,6 @@ from typing import Any
 from attrs import evolve, field, frozen
 
 from workhold.asking.sheet import SheetQuestion
-from workhold.bending.figures import Bending
 from workhold.drawing.hold_cautions import list_hold_cautions
 from workhold.drawing.scene import LengthUnit
 from workhold.drawing.seating_words import SeatingSentences, capitalize_sentence
@@ -23,6 +22,7 @@ from workhold.model.bodies import SUPPORT_HEIGHT
 from workhold.model.first_side import FirstSide
 from workhold.model.fixture import Fixture
 from workhold.model.moved_setup import find_move_to_middle, move_fixture_by_holes, move_to
+from workhold.model.part_bending import BendingFigures
 from workhold.model.program import Program
 from workhold.model.requirements import Load, Tolerance
 from workhold.model.result import Result
@@ -98,7 +98,8 @@ class SheetDetails:
     program : what the machine does while the part is held; None without a program.
     passing : where its tools come nearest to what holds the part; None where that is not known.
     cutting : the jaw force that the program's tools ask for; None where their forces are not known.
-    bending : how far clamping bends the part; None where it was not asked for.
+    bending : how far clamping bends the part; None where it was not asked for. Figures without a mesh have no
+        picture.
     bend : largest bending or movement of the part in mm without a caution.
     bent : how far the pegs bend; None where it is not known how high they press.
     listed_as : noun of what ``number`` counts.
@@ -136,7 +137,7 @@ class SheetDetails:
     program: Program | None = None
     passing: ToolClearance | None = None
     cutting: CuttingNeed | None = None
-    bending: Bending | None = None
+    bending: BendingFigures | None = None
     bend: float | None = None
     bent: BentPegs | None = None
     listed_as: str = "Fixture"
@@ -415,7 +416,7 @@ def collect_sheet_details(
     supports: ChosenSupports | None = None,
     first_side: FirstSide | None = None,
     listed_as: str = "Fixture",
-    bending: Bending | None = None,
+    bending: BendingFigures | None = None,
     **asked: Any,
 ) -> tuple[Fixture, SheetDetails]:
     """Return (fixture with all its figures of quality, details of its setup sheet).

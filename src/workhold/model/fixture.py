@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from workhold.errors import InputError
 from workhold.fixels.carrier import JAWS, WALL, make_hole_name
 from workhold.model.jaw_hold import JawHold
+from workhold.model.part_bending import BendingFigures
 from workhold.model.pose import Pose
 from workhold.model.straps import StrapHardware, StrappedHold
 
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
     import cadquery
 
     from workhold.bending.figures import Bending
-    from workhold.bending.materials import ElasticMaterial
     from workhold.fixels.toolkit import Toolkit
+    from workhold.model.elastic_material import ElasticMaterial
     from workhold.model.program import Program
     from workhold.model.requirements import Load, Zone
     from workhold.model.result import Result
@@ -179,6 +180,7 @@ class Fixture:
         otherwise. It does not count when fixtures are compared.
     seating : the other ways in which its pegs can hold the part, a ``model.seating.Seating``; None where
         seating was not asked for.
+    bent : how far it bends its part, where the result or its file says so; None otherwise. :meth:`bending` computes it.
     hold : how friction holds it, between flat jaws without pegs, or under straps against locators; None of other
         fixtures.
     passing, asking : of a file that is verified: what the file says about where the program's tools pass, and
@@ -194,6 +196,7 @@ class Fixture:
     pair: ClampPair | None = None
     listed: ListPlace | None = field(default=None, eq=False)
     seating: Any = field(default=None, eq=False)
+    bent: BendingFigures | None = field(default=None, eq=False)
     hold: JawHold | StrappedHold | None = None
     passing: Any = field(default=None, eq=False, repr=False)
     asking: Any = field(default=None, eq=False, repr=False)

@@ -16,6 +16,7 @@ from workhold.model.fixture import Fixture, ListPlace
 from workhold.model.fixture_table import BLOCK, FixtureTable, make_fixture_of_row, make_fixtures
 from workhold.model.jaw_hold import JawHold
 from workhold.model.notes import AskedFor, ChosenOnly, Cut, FittedOutline, KeptBest, Note, make_notes
+from workhold.model.part_bending import BendingFigures, find_bending_figure
 from workhold.model.query import Query
 from workhold.model.search_report import ProofReport
 from workhold.model.seating import Seating
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     import pyarrow
     from pandas import DataFrame
 
+    from workhold.model.elastic_material import ElasticMaterial
     from workhold.model.requirements import Load, Zone
     from workhold.model.support_request import Faces, SpatialLoad
     from workhold.model.support_triples import Supports
@@ -38,7 +40,16 @@ __all__ = ["Result"]
 
 # What an editor need not offer: other rooms use it.
 INTERNAL = frozenset(
-    {"attach_seating", "find_list_place", "mark_cut_short", "reasons", "slice_rows", "words"}
+    {
+        "add_bending",
+        "attach_seating",
+        "find_list_place",
+        "mark_cut_short",
+        "reasons",
+        "renumber_bending",
+        "slice_rows",
+        "words",
+    }
 )
 
 
@@ -71,6 +82,9 @@ class Result:
         their pairs of directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, for the first fixtures, as many as there are entries.
     holds : for each fixture between flat jaws or under straps, how it holds the part; () for other toolkits.
+    bending : how far fixtures bend their part, by index; only of those that were bent, see :meth:`bend`.
+    bent_by : key of the figure of bending by which those with ``bending`` are listed first, "clamp_distortion" or
+        "give"; None where they stand in the order of the search.
     least_effective_error : least effective location error in mm among the fixtures that are fit and without
         warning, or among those that come nearest to that; steps of error count from it
         (``model.first_choice``). None where the order has no steps, and in results older than these.
@@ -89,6 +103,8 @@ class Result:
     seating: tuple[Seating, ...] = field(default=(), hash=False)
     least_effective_error: float | None = None
     holds: tuple[JawHold | StrappedHold, ...] = field(default=(), hash=False)
+    bending: Mapping[int, BendingFigures] = field(factory=dict, hash=False)
+    bent_by: str | None = None
 
     def __attrs_post_init__(self) -> None:
         refuse_kind(self.query, Query, "the query", "give a Query, such as workhold.Query(part, toolkit)")
@@ -150,9 +166,11 @@ class Result:
         return self.attach_seating(made, index)
 
     def attach_seating(self, made: Fixture, index: int) -> Fixture:
-        """Return the fixture with the seating, or with the hold by jaws or straps, that this result has at an
-        index.
+        """Return the fixture with the seating, or with the hold by jaws or straps, and with the bending that this
+        result has at an index.
         """
+        if index in self.bending:
+            made = evolve(made, bent=self.bending[index])
         if index < len(self.holds):
             hold = self.holds[index]
             return evolve(made, hold=hold, quality={**made.quality, **hold.figures})
@@ -209,6 +227,7 @@ class Result:
             table=self.table.take(chosen),
             seating=tuple(self.seating[row] for row in chosen if row < len(self.seating)),
             holds=tuple(self.holds[row] for row in chosen if row < len(self.holds)),
+            bending=self.renumber_bending(chosen.tolist()),
             notes=(*kept, ChosenOnly(found, len(chosen))),
         )
 
@@ -235,8 +254,59 @@ class Result:
 
     def slice_rows(self, rows: slice) -> Result:
         """Return the result with the fixtures of a slice, notes unchanged."""
-        holds = self.holds[rows]
-        return evolve(self, table=self.table.take(rows), seating=self.seating[rows], holds=holds)
+        holds, places = self.holds[rows], range(len(self))[rows]
+        bending = self.renumber_bending(places) if self.bending else {}
+        return evolve(
+            self, table=self.table.take(rows), seating=self.seating[rows], holds=holds, bending=bending
+        )
+
+    def renumber_bending(self, order: Sequence[int]) -> dict[int, BendingFigures]:
+        """Return the bending of the fixtures at some rows, by their indices in ``order``."""
+        return {
+            number: self.bending[row]
+            for number, row in enumerate(order if self.bending else ())
+            if row in self.bending
+        }
+
+    def add_bending(self, found: Mapping[int, BendingFigures], rank_by: str | None = None) -> Result:
+        """Return the result with how far some of its fixtures bend their part.
+
+        Parameters
+        ----------
+        found : figures by the index of a fixture, from 0.
+        rank_by : "clamp_distortion" or "give": those that were bent are then listed first, the least first, and the
+            others after them in their order. None for the order that the result has.
+
+        Raises
+        ------
+        InputError
+            Where a fixture has no such figure, or the first fixtures have their seating and others would come before
+            them.
+        """
+        bending = {**self.bending, **found}
+        rank_by = rank_by or self.bent_by
+        if rank_by is None:
+            return evolve(self, bending=dict(sorted(bending.items())))
+        key = find_bending_figure(rank_by).key
+        if any(key not in one.figures for one in bending.values()):
+            raise InputError(
+                "there is nothing to rank by the give: the result has neither loads nor a program with forces."
+            )
+        first = sorted(bending, key=lambda row: (bending[row].figures[key], row))
+        order = [*first, *(row for row in range(len(self)) if row not in bending)]
+        if any((row < len(self.seating)) != (place < len(self.seating)) for place, row in enumerate(order)):
+            raise InputError(
+                f"the first {len(self.seating)} fixtures are in the order of their seating: bend no others than these."
+            )
+        whole = evolve(self, bending=bending)
+        return evolve(
+            self,
+            table=self.table.take(np.array(order, np.int64)),
+            seating=tuple(self.seating[row] for row in order[: len(self.seating)]),
+            holds=tuple(self.holds[row] for row in order if row < len(self.holds)),
+            bending=whole.renumber_bending(order),
+            bent_by=key,
+        )
 
     def mark_cut_short(self, listed: int) -> Result:
         """Return the result as incomplete,
@@ -257,8 +327,9 @@ class Result:
         only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
         count = f"{only}{len(self):,} fixture{'s' * (len(self) != 1)}"
         where = f"{self.toolkit.wording.inside.partition(' ')[0]} a {self.toolkit.noun}"
+        bent = f", {len(self.bending):,} with how far they bend the part" if self.bending else ""
         seated = f", with the seating of the first {len(self.seating):,}" if self.seating else ""
-        return f"{count} of {self.workpiece.name} {where} ({kinds}){seated}{whole}"
+        return f"{count} of {self.workpiece.name} {where} ({kinds}){seated}{bent}{whole}"
 
     def __dir__(self) -> list[str]:
         return sorted(set(object.__dir__(self)) - INTERNAL)
@@ -361,6 +432,49 @@ class Result:
         from workhold.presenting.data import to_arrow
 
         return to_arrow(self)
+
+    def bend(
+        self,
+        material: str | ElasticMaterial = "aluminium-6061",
+        *,
+        best: int = 20,
+        rank_by: str | None = None,
+        thickness: float | None = None,
+        jaw_force: float | None = None,
+        jaw: str | float = "screw",
+        faces: Sequence[int | str] = (),
+        part: str | Path | None = None,
+    ) -> Result:
+        """Return the result with how far its best fixtures bend their part, as ``fixture.bent`` of each.
+
+        Saved, it has these figures. Needs the extra ``bending``, and takes some seconds.
+
+        Parameters
+        ----------
+        best : how many of the first fixtures to bend; seats for which no straps were found are left out.
+        rank_by : "clamp_distortion" or "give": those that were bent come first, the least first. None leaves the
+            order.
+        material, thickness, jaw_force, jaw, faces, part : see :meth:`Fixture.bending`.
+
+        Raises
+        ------
+        InputError
+            As :meth:`Fixture.bending`; also for a result without fixtures, without a figure to rank by, and where
+            other fixtures would come before those whose seating is known.
+        """
+        from workhold.presenting.bent import bend_result
+
+        return bend_result(
+            self,
+            material,
+            best=best,
+            rank_by=rank_by,
+            thickness=thickness,
+            jaw_force=jaw_force,
+            jaw=jaw,
+            faces=faces,
+            part=part,
+        )
 
     def supports(
         self,

@@ -7,19 +7,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from attrs import evolve
+from attrs import evolve, fields
 
 from workhold.bending.asking import BendingQuestion, find_bendings
 from workhold.bending.figures import Bending
-from workhold.bending.holding import PadsBelow
-from workhold.bending.materials import ElasticMaterial, find_material
 from workhold.bending.shape import KeptShape, PartToBend, PrismShape
 from workhold.drawing.bent_part import choose_exaggeration, compute_node_colours
 from workhold.errors import InputError
 from workhold.files.glb import Mesh, make_bodies_glb, make_surface_mesh
 from workhold.files.step.part_shape import PartShape
 from workhold.model.bodies import BodySizes, list_fixture_bodies
+from workhold.model.elastic_material import ElasticMaterial, find_material
+from workhold.model.part_bending import BendingFigures, PadsBelow, find_bending_figure
 from workhold.model.pose import Pose
+from workhold.model.straps import StrappedHold
 from workhold.presenting.assembly import read_part_shape
 from workhold.statics.loads import read_jaw_stiffness
 from workhold.units import MILLIMETRE
@@ -27,9 +28,12 @@ from workhold.units import MILLIMETRE
 if TYPE_CHECKING:
     from workhold.model.fixture import Fixture
     from workhold.model.query import Query
+    from workhold.model.result import Result
     from workhold.model.support_triples import Supports
 
 __all__ = [
+    "bend_result",
+    "find_sheet_bending",
     "compute_bending",
     "compute_sheet_bending",
     "make_bent_glb",
@@ -125,6 +129,87 @@ def compute_bending(
     query = listed.result.query
     whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
     return find_bendings(listed.result, [listed.row], whole, asked)[0]
+
+
+def bend_result(
+    result: Result,
+    material: str | ElasticMaterial,
+    *,
+    best: int = 20,
+    rank_by: str | None = None,
+    thickness: float | None = None,
+    jaw_force: float | None = None,
+    jaw: str | float = "screw",
+    faces: Sequence[int | str] = (),
+    part: str | Path | None = None,
+) -> Result:
+    """Return a result with how far its best fixtures bend their part, see :meth:`workhold.Result.bend`."""
+    asked = BendingQuestion(
+        find_material(material) if isinstance(material, str) else material,
+        thickness,
+        jaw_force,
+        tuple(faces),
+        read_jaw_stiffness(jaw),
+    )
+    if type(best) is not int or best < 1:
+        raise InputError(f"best {best!r} is not a number of fixtures: give a whole number from 1.")
+    rows = list_rows_to_bend(result, best)
+    key = None if rank_by is None else find_bending_figure(rank_by).key
+    shape = read_part_shape(part, result.workpiece)
+    whole = make_shape_to_bend(result.query, asked.find_part_height(result.query), shape)
+    found = find_bendings(result, rows, whole, asked)
+    return result.add_bending({row: one.to_figures() for row, one in zip(rows, found, strict=True)}, key)
+
+
+def list_rows_to_bend(result: Result, best: int) -> list[int]:
+    """Return the indices, from 0, of the first ``best`` fixtures of a result; seats for which no straps were found are
+    left out.
+
+    Raises
+    ------
+    InputError
+        Where there are none.
+    """
+    if not len(result):
+        raise InputError("the result lists no fixture: there is nothing to bend.")
+    rows = []
+    for row in range(len(result)):
+        hold = result[row].hold
+        if not isinstance(hold, StrappedHold) or hold.straps:
+            rows.append(row)
+        if len(rows) == best:
+            break
+    if not rows:
+        raise InputError(
+            "no seat of the result has straps, so that nothing bends its part: design it again with a load."
+        )
+    return rows
+
+
+def find_sheet_bending(
+    fixture: Fixture, settings: dict[str, Any], shape: PartShape | None
+) -> BendingFigures | None:
+    """Return how far a fixture bends its part, for its setup sheet; None where neither the settings name a material nor
+    its result file says it.
+
+    What the file says is shown with a picture where its mesh can be made, and without one otherwise.
+
+    Parameters
+    ----------
+    settings, shape : see :func:`compute_sheet_bending`.
+    """
+    told = fixture.bent
+    if settings.get("material") is not None or told is None:
+        return compute_sheet_bending(fixture, settings, shape)
+    listed = fixture.listing
+    below = {} if told.below is None else {listed.row: told.below}
+    asked = BendingQuestion(told.material, told.thickness, told.jaw_force, told.faces, told.stiffness, below)
+    try:
+        whole = make_shape_to_bend(listed.result.query, told.thickness, shape)
+        drawn = find_bendings(listed.result, [listed.row], whole, asked)[0]
+    except InputError:
+        return told
+    return evolve(drawn, **{one.name: getattr(told, one.name) for one in fields(BendingFigures)})
 
 
 def compute_sheet_bending(

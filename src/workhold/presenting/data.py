@@ -18,7 +18,13 @@ from attrs import asdict, fields
 from attrs.filters import exclude
 
 from workhold.errors import InputError
-from workhold.files.result.fixture_text import list_column_names, list_fixture_rows, list_seating_values
+from workhold.files.result.fixture_text import (
+    list_bending_columns,
+    list_bending_values,
+    list_column_names,
+    list_fixture_rows,
+    list_seating_values,
+)
 from workhold.files.result.hold_text import make_hold_entry
 from workhold.files.result.writer import (
     convert_to_json_value,
@@ -150,6 +156,7 @@ def describe_fixture(fixture: Fixture, toolkit: Toolkit, rank: int | None = None
         "quality": {key: convert_finite(value) for key, value in fixture.quality.items()},
         **({} if fixture.hold is None else describe_hold(fixture)),
         **({} if fixture.seating is None else {"seating": fixture.seating.to_fields()}),
+        **({} if fixture.bent is None else {"bending": fixture.bent.to_data()}),
         **describe_by_hand(fixture, rank),
     }
 
@@ -448,13 +455,16 @@ def make_columns(result: Result) -> dict[str, Any]:
             block += [np.array(holes), np.array([jaw.name for jaw in jaws]), column, row, *others]
         block += looks
         blocks.append(block)
-    seating_count = len(SEATING_FIGURES) if result.seating else 0
+    seating_count = (len(SEATING_FIGURES) if result.seating else 0) + len(list_bending_columns(result))
     joined = [np.concatenate(parts) for parts in zip(*blocks, strict=True)] or [np.zeros(0)] * (
         len(names) - 1 - seating_count
     )
     columns = [np.arange(1, len(result) + 1), *joined]
     if result.seating:
         columns += list(np.array(list_seating_values(result)).T)
+    if result.bending:
+        bent = [list_bending_values(result, row) for row in range(len(result))]
+        columns += list(np.array(bent, np.float64).T)
     return {
         name: column.tolist() if column.dtype.kind == "U" else column
         for name, column in zip(names, columns, strict=True)

@@ -174,7 +174,7 @@ def save_sheet(
             raise InputError(f"{path} has no supports: let the name end in .pdf, .svg, .png or .step.")
         settings["supports"] = ChosenSupports.from_fixture(fixture, supports, best)
     if part is not None:
-        if ending not in STEP_ENDINGS and settings["material"] is None:
+        if ending not in STEP_ENDINGS and settings["material"] is None and fixture.bent is None:
             raise InputError(
                 f"{path} has no shape of the part: let the name end in .step, name the part's material, or leave part out."
             )
@@ -246,10 +246,10 @@ def write_paper(
             f"{path} names no kind of setup sheet: let the name end in {endings} or {MODEL_ENDINGS[-1]}."
         )
     shape = settings.pop("shape", None)
-    if settings.get("material") is not None:
-        from workhold.presenting.bent import compute_sheet_bending
+    if settings.get("material") is not None or result[rank - 1].bent is not None:
+        from workhold.presenting.bent import find_sheet_bending
 
-        settings["bending"] = compute_sheet_bending(result[rank - 1], settings, shape)
+        settings["bending"] = find_sheet_bending(result[rank - 1], settings, shape)
     pages = draw_setup_sheet(result, rank, result_hash=compute_file_hash(result_file), **settings)
     write_bytes(path, make_pages_file(pages, ending, settings["day"]))
 

@@ -19,7 +19,8 @@ __all__ = ["explain_why_first"]
 def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     """Return a line on why the first fixture of a result is ranked first.
 
-    Empty for a result without fixtures and for any ranking but the usual one.
+    Empty for a result without fixtures and for any ranking but the usual one. Of a result in an order of bending
+    the line says so.
 
     Examples
     --------
@@ -33,6 +34,8 @@ def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
         """Return a length in mm as text in the unit, with as many decimals as figures have."""
         return f"{unit.format_number(mm, unit.decimals + 1)} {unit.abbreviation}"
 
+    if result.bent_by is not None:
+        return describe_least_bent(result)
     least, query = result.least_effective_error, result.query
     if not query.has_house_order or least is None or len(result) == 0:
         return ""
@@ -64,6 +67,14 @@ def explain_why_first(result: Result, unit: Unit = MILLIMETRE) -> str:
     else:
         near = "within a tenth of the least"
     return f"First: {said}; {size}, {near}; {describe_first_position(result, angle)}."
+
+
+def describe_least_bent(result: Result) -> str:
+    """Return a line on why the first fixture of a result in an order of bending is first."""
+    does = (
+        "is bent least by its clamps" if result.bent_by == "clamp_distortion" else "gives least at the cutter"
+    )
+    return f"First: of the fixtures whose bending was computed, its part {does}."
 
 
 def describe_first_position(result: Result, angle: int) -> str:

@@ -107,12 +107,12 @@ class JawJudge:
         if (first := self.seen.setdefault(key, place)) != place:
             yield f"it is the same as fixture {first + 1}"
 
-    def find_order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
+    def find_order_faults(self, fixtures: Sequence[Fixture], ahead: int = 0) -> Iterator[str]:
         """Yield one sentence for the first fixture that belongs before its predecessor in the list; nothing
-        if all are in order.
+        if all are in order. The first ``ahead`` fixtures stand in another order.
         """
-        rows = [rank_cautions(one.hold) for one in fixtures if isinstance(one.hold, JawHold)]
-        for place, (before, after) in enumerate(pairwise(rows), 2):
+        rows = [rank_cautions(one.hold) for one in fixtures[ahead:] if isinstance(one.hold, JawHold)]
+        for place, (before, after) in enumerate(pairwise(rows), ahead + 2):
             if after < before:
                 yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"
                 return

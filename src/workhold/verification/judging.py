@@ -262,6 +262,7 @@ def find_order_faults(
     least: float | None = None,
     is_whole: bool = False,
     is_chosen: bool = False,
+    ahead: int = 0,
 ) -> Iterator[str]:
     """Yield one sentence for the first fixture that is out of order.
 
@@ -273,6 +274,7 @@ def find_order_faults(
     least : least effective error in mm among all fixtures found, as written; None where it is not written.
     is_whole : whether all fixtures found are listed.
     is_chosen : whether somebody chose the listed fixtures, so that the best may be missing.
+    ahead : how many of the first fixtures stand in another order, that of a figure of bending.
     """
     usual = query.without_seating
     if any(key not in fixture.quality for fixture in fixtures for key in list_ranking_figures(usual.rank_by)):
@@ -285,6 +287,7 @@ def find_order_faults(
         yield fault
         return
     off = query.tolerance.peg + query.tolerance.face
+    fixtures = fixtures[ahead:]
 
     def make_key(fixture: Fixture, figures: Mapping[str, float], asked: Query) -> list[Range]:
         """Return the sort key of a fixture with these figures, as ranges, in the order of the query
@@ -308,7 +311,7 @@ def find_order_faults(
         yield "the seating of a fixture is stated, but not that of all before it"
         return
     # Of a search that was interrupted those come first whose seating was worked out by then.
-    whole = count == query.seating
+    whole = count == query.seating and not ahead
     if whole and any(is_better(row, first) for first in rows[:count] for row in rows[count : count + 1]):
         contrast = "but without it is better than one before it that has"
         yield f"fixture {count + 1} has no seating stated, {contrast}"
@@ -320,15 +323,16 @@ def find_order_faults(
             continue
         better = is_better(one or rows[place], before or rows[place - 1])
         if better:
-            yield f"fixture {place + 1} is better than the one before it, by {', '.join(ranking)}"
+            yield f"fixture {ahead + place + 1} is better than the one before it, by {', '.join(ranking)}"
             return
         if better is None and is_earlier(fixtures[place], fixtures[place - 1], hardware):
             yield (
-                f"fixture {place + 1} is as good as the one before it, and comes before it by type, holes "
+                f"fixture {ahead + place + 1} is as good as the one before it, and comes before it by type, holes "
                 "and pose"
             )
             return
     # That which has the least error stands no step above it, so neither does the first.
+    is_chosen = is_chosen or ahead > 0
     is_bare = judge is not None and least is not None and count == 0 and bool(fixtures) and not is_chosen
     if is_bare and judge is not None and judge.effective.count_error_steps(fixtures[0])[0] > 0:
         yield f"the least effective error is given as {least:.9f} mm, a step below that of the first fixture"

@@ -15,13 +15,14 @@ from pathlib import Path
 from typing import Any, overload
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import is_archive, map_archive
 from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SearchQuestion
 from workhold.errors import InputError
+from workhold.files.result.bending_forms import check_bending, read_head_bendings
 from workhold.files.result.fixture_forms import check_seating, read_head_seatings
 from workhold.files.result.forms import Head
 from workhold.files.result.hold_text import is_friction_fixture
@@ -34,6 +35,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import compute_force_ratios
 from workhold.model.fixture import ClampPair, Fixture, Peg
 from workhold.model.notes import ChosenOnly, Note
+from workhold.model.part_bending import BendingFigures
 from workhold.model.pose import Pose
 from workhold.model.quality import list_figures_in_columns
 from workhold.model.query import Query
@@ -106,6 +108,22 @@ def add_seating_claims(
     return out
 
 
+def check_bendings(fixtures: Sequence[Fixture], path: Path | str) -> list[Fixture]:
+    """Return the fixtures of a file, which have its fields of bending, with these as objects of the model.
+
+    Raises
+    ------
+    InputError
+        When the fields of a bending cannot be used.
+    """
+    return [
+        fixture
+        if fixture.bent is None
+        else evolve(fixture, bent=check_bending(fixture.bent, Path(path), number))
+        for number, fixture in enumerate(fixtures, 1)
+    ]
+
+
 Columns = Mapping[str, NDArray[Any]]
 
 # Fixtures looked at together.
@@ -130,6 +148,7 @@ class FixturesInColumns(Sequence[Fixture]):
     columns: Columns
     toolkit: Toolkit
     claims: tuple[SeatingClaim, ...] = ()
+    bending: Mapping[int, BendingFigures] = field(factory=dict)
 
     def __attrs_post_init__(self) -> None:
         for start in range(0, len(self), BLOCK):
@@ -160,6 +179,8 @@ class FixturesInColumns(Sequence[Fixture]):
         made = self.make_fixture(place)
         # A place from the end is one from the start.
         place %= len(self)
+        if place in self.bending:
+            made = evolve(made, bent=self.bending[place])
         return evolve(made, seating=self.claims[place]) if place < len(self.claims) else made
 
     def make_fixture(self, place: int) -> Fixture:
@@ -206,7 +227,7 @@ class WrittenListing:
     query : what was asked.
     fixtures : as listed.
     counts, found, distinct : numbers of fixtures by type, as written.
-    complete, notes, statistics, proof, pairs, seats, least_effective_error : see ``Result``.
+    complete, notes, statistics, proof, pairs, seats, least_effective_error, bent_by : see ``Result``.
     faults : contradictions in the head of the file, one sentence each.
     """
 
@@ -223,6 +244,7 @@ class WrittenListing:
     pairs: int | None = None
     seats: int | None = None
     least_effective_error: float | None = None
+    bent_by: str | None = None
 
     @property
     def is_whole(self) -> bool:
@@ -240,6 +262,32 @@ class WrittenListing:
     def hardware(self) -> ToolkitRules:
         return ToolkitRules.from_query(self.query)
 
+    @property
+    def bent_count(self) -> int:
+        """Number of fixtures that are listed first, in an order of bending; 0 of a file in the usual order."""
+        return 0 if self.bent_by is None else sum(fixture.bent is not None for fixture in self.fixtures)
+
+    def find_bent_faults(self) -> Iterator[str]:
+        """Yield one sentence where fixtures are not in the order of the figure of bending that the file names.
+
+        Those whose bending is stated come first, the least first.
+        """
+        count, by = self.bent_count, self.bent_by
+        if by is None:
+            return
+        if not count:
+            yield f"fixtures are listed by {by}, and none has it"
+        values = list[float]()
+        for place, fixture in enumerate(self.fixtures[:count], 1):
+            figure = None if fixture.bent is None else fixture.bent.figures.get(by)
+            if figure is None:
+                yield f"fixtures are listed by {by}, and fixture {place} does not have it"
+                return
+            if values and figure < values[-1]:
+                yield f"fixture {place} has a smaller {by} than the one before it"
+                return
+            values.append(figure)
+
 
 def collect_claims(result: Result) -> WrittenListing:
     """Return the claims of a result that is in memory, not in a file."""
@@ -256,6 +304,7 @@ def collect_claims(result: Result) -> WrittenListing:
         pairs=result.pairs,
         seats=result.seats,
         least_effective_error=result.least_effective_error,
+        bent_by=result.bent_by,
     )
 
 
@@ -268,7 +317,7 @@ def read_listing(path: str | Path) -> WrittenListing:
         When the file cannot be read, is not a result file, or describes no usable workpiece or toolkit.
     """
     path = Path(path)
-    head, taken, seatings = read_head_and_fixtures(path)
+    head, taken, seatings, bendings = read_head_and_fixtures(path)
     try:
         query = head.to_query()
         types, notes = query.toolkit.types, read_notes(head, query)
@@ -276,7 +325,7 @@ def read_listing(path: str | Path) -> WrittenListing:
             query,
             make_friction_fixtures(taken, query)
             if query.toolkit.holds_by_friction
-            else complete_fixtures(taken, seatings, ToolkitRules.from_query(query), query, path),
+            else complete_fixtures(taken, seatings, bendings, ToolkitRules.from_query(query), query, path),
             read_counts_by_type(head.counts, "counts", types),
             read_counts_by_type(head.found, "found", types, head.counts),
             read_counts_by_type(head.distinct, "distinct", types, head.counts),
@@ -292,6 +341,7 @@ def read_listing(path: str | Path) -> WrittenListing:
             head.pairs,
             head.seats,
             head.least_effective_error,
+            head.bent_by,
         )
     except InputError as error:
         raise InputError(f"{path} cannot be verified: {error}") from error
@@ -308,24 +358,33 @@ def make_friction_fixtures(taken: Any, query: Query) -> list[Fixture]:
     """
     if not isinstance(taken, list) or not all(isinstance(one, AnyHoldPart) for one in taken):
         raise InputError(f"its fixtures are not those of a {query.toolkit.noun}.")
-    return [part.to_fixture(query.toolkit, query.unit_force) for part in taken]
+    return [
+        evolve(
+            part.to_fixture(query.toolkit, query.unit_force),
+            bent=None if part.bending is None else part.bending.to_figures(),
+        )
+        for part in taken
+    ]
 
 
-def read_head_and_fixtures(path: Path) -> tuple[Head, list[Fixture] | list[AnyHoldPart] | Columns, list[Any]]:
-    """Return (head of a file, its fixtures or columns, seatings).
+def read_head_and_fixtures(
+    path: Path,
+) -> tuple[Head, list[Fixture] | list[AnyHoldPart] | Columns, list[Any], dict[int, Any]]:
+    """Return (head of a file, its fixtures or columns, seatings, bendings by index).
 
-    The seatings are those of the first fixtures of a file in columns; [] for a file with a fixture in each
-    line, where each fixture holds its own.
+    The seatings are those of the first fixtures of a file in columns; they and the bendings are empty for a file with a
+    fixture in each line, where each fixture holds its own.
     """
     try:
         if is_archive(path):
             # All of it is read once, to compare its checksums.
             text, columns = map_archive(path, describe_columns_from_head, HEAD, whole=True)
             data = parse_head(text)
-            return check_head(data, path), columns, read_head_seatings(data, path)
+            bendings = read_head_bendings(data, path, len(columns["arrangement"]))
+            return check_head(data, path), columns, read_head_seatings(data, path), bendings
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror or error}.") from error
-    return *read_parts(path, read_any_fixtures), []
+    return *read_parts(path, read_any_fixtures), [], {}
 
 
 def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[AnyHoldPart]:
@@ -343,13 +402,14 @@ def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[
 def complete_fixtures(
     fixtures: list[Fixture] | list[AnyHoldPart] | Columns,
     seatings: Sequence[Any],
+    bendings: Mapping[int, Any],
     hardware: ToolkitRules,
     query: Query,
     path: Path,
 ) -> Sequence[Fixture]:
-    """Return the fixtures, with the travels of their clamps and their seating claims added.
+    """Return the fixtures, with the travels of their clamps, their seating claims and their bending added.
 
-    ``seatings`` are those of the first fixtures of a file in columns.
+    ``seatings`` are those of the first fixtures of a file in columns, ``bendings`` those by index.
 
     Raises
     ------
@@ -365,7 +425,8 @@ def complete_fixtures(
         poses = [fixture.pose for fixture in listed[: len(seatings)]]
         numbered = enumerate(zip(seatings, poses, strict=True), 1)
         claims = tuple(make_claim(fields, pose, query, path, k) for k, (fields, pose) in numbered)
-        return evolve(listed, claims=claims)
+        bending = {row: check_bending(one, path, row + 1) for row, one in bendings.items()}
+        return evolve(listed, claims=claims, bending=bending)
     out = []
     for number, fixture in enumerate(fixtures, 1):
         if not isinstance(fixture, Fixture):
@@ -374,7 +435,7 @@ def complete_fixtures(
             out.append(hardware.complete_fixture(fixture))
         except InputError as error:
             raise InputError(f"fixture {number} cannot be used: {error}.") from error
-    return add_seating_claims(out, query, path)
+    return check_bendings(add_seating_claims(out, query, path), path)
 
 
 def find_missing_keys(head: Head) -> list[str]:
@@ -390,6 +451,8 @@ def find_missing_keys(head: Head) -> list[str]:
     spared |= {"restrictions.touch", "max_location_error"}
     # Where steps count, its absence is a fault of the order.
     spared |= {"least_effective_error"}
+    # Few files are in an order of bending.
+    spared |= {"bent_by"}
     # What acts along z, and how high, is written where it is said.
     spared |= {f"loads.{number}.{key}" for number in range(len(head.loads)) for key in ("upward", "height")}
     # Only of a raw block is there a part inside.

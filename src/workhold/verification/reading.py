@@ -91,7 +91,8 @@ def read_fixture(item: Any) -> Fixture:
         fixture = add_working_forces(fixture, pair)
     fixture = add_flat_directions(fixture, item["flats"]) if "flats" in item else fixture
     # What its fields say is looked at where the query is known.
-    return evolve(fixture, seating=item["seating"]) if "seating" in item else fixture
+    fixture = evolve(fixture, seating=item["seating"]) if "seating" in item else fixture
+    return evolve(fixture, bent=item["bending"]) if item.get("bending") is not None else fixture
 
 
 def add_flat_directions(fixture: Fixture, flats: Any) -> Fixture:

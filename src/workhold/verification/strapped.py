@@ -608,10 +608,13 @@ class StrapJudge:
                 most = max(most, found[0])
         return most
 
-    def find_order_faults(self, fixtures: Sequence[Fixture]) -> Iterator[str]:
-        """Yield one sentence for the first fixture that belongs before its predecessor in the list."""
-        rows = [classify_hold(one.hold) for one in fixtures if isinstance(one.hold, StrappedHold)]
-        for place, (before, after) in enumerate(pairwise(rows), 2):
+    def find_order_faults(self, fixtures: Sequence[Fixture], ahead: int = 0) -> Iterator[str]:
+        """Yield one sentence for the first fixture that belongs before its predecessor in the list.
+
+        The first ``ahead`` fixtures stand in another order.
+        """
+        rows = [classify_hold(one.hold) for one in fixtures[ahead:] if isinstance(one.hold, StrappedHold)]
+        for place, (before, after) in enumerate(pairwise(rows), ahead + 2):
             if after < before:
                 yield f"fixture {place} is better than the one before it: unfit ones, and such as hold less, come last"
                 return

@@ -378,7 +378,8 @@ def verify_holds(listing: WrittenListing, progress: Progress) -> Verification:
     listed = dict.fromkeys(listing.query.toolkit.types, 0)
     for fixture in listing.fixtures:
         listed[fixture.type] = listed.get(fixture.type, 0) + 1
-    faults = [*listing.faults, *judge.find_order_faults(listing.fixtures)]
+    faults = [*listing.faults, *listing.find_bent_faults()]
+    faults += judge.find_order_faults(listing.fixtures, listing.bent_count)
     if dict(listing.counts) != listed:
         faults.append(f"the counts are {dict(listing.counts)}, and {listed} are listed")
     if any(listing.found[name] < count for name, count in listed.items()):
@@ -427,7 +428,9 @@ def verify_listing(listing: WrittenListing, progress: Progress = ignore_progress
             listing.least_effective_error,
             listing.is_whole,
             listing.is_chosen,
+            listing.bent_count,
         ),
+        *listing.find_bent_faults(),
         *find_pattern_faults(everything, query),
         *find_seat_faults(listing, refuted),
         *find_stock_faults(query),

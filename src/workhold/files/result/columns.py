@@ -22,6 +22,7 @@ from workhold.archive import ArchiveWriter, map_archive, release_mapped_pages
 from workhold.errors import InputError
 from workhold.files.atomic import explain_system_errors, write_binary_file
 from workhold.files.replacing import refuse_other_ending, refuse_output
+from workhold.files.result.bending_forms import add_bendings, check_bending, read_head_bendings
 from workhold.files.result.fixture_forms import add_seatings, check_seating, read_head_seatings
 from workhold.files.result.fixture_text import round_table_for_file, round_to_twelve_digits
 from workhold.files.result.parts import (
@@ -85,6 +86,10 @@ class ColumnsSink:
             text["counts"] = {name: counts[name] for name in result.toolkit.types}
             if result.query.seating is not None:
                 text["seatings"] = [one.to_fields() for one in result.seating]
+            if result.bending:
+                text["bendings"] = [
+                    {"fixture": row + 1, "bending": one.to_data()} for row, one in result.bending.items()
+                ]
             parts = write_head_json(text, result.query.program, ", ", is_ascii=False)
             archive.close(HEAD, "".join(parts) + "}", FORMAT)
 
@@ -217,4 +222,6 @@ def read_columns(path: Path) -> Result:
         check_seating(one, pose, path, k)
         for k, (one, pose) in enumerate(zip(seatings, poses, strict=True), 1)
     ]
-    return add_seatings(result, seating, path)
+    bendings = read_head_bendings(data, path, len(result))
+    bending = {row: check_bending(one, path, row + 1) for row, one in bendings.items()}
+    return add_bendings(add_seatings(result, seating, path), bending, head.bent_by, path)

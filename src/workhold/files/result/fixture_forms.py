@@ -15,6 +15,7 @@ from attrs import evolve
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from workhold.errors import InputError
+from workhold.files.result.bending_forms import BendingPart
 from workhold.files.result.forms import FormPart, Head, Pair, describe_first_fault
 from workhold.files.result.holds import HoldPart
 from workhold.files.result.strapped import StrappedSeatPart
@@ -290,6 +291,7 @@ class FixturePart(FormPart):
     pairs: Whole | None = None
     quality: dict[str, float] = Field(default_factory=dict)
     seating: SeatingPart | None = None
+    bending: BendingPart | None = None
     program_clearance: NearestMovePart | None = None
     program_forces: CuttingNeedPart | None = None
 

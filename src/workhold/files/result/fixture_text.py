@@ -32,6 +32,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.clamps import compute_force_ratios
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, compute_peg_places, list_flat_angles
+from workhold.model.part_bending import BENDING_COLUMNS
 from workhold.model.quality import SEATING_FIGURES, Figure, list_figures_in_columns
 from workhold.model.result import Result
 from workhold.model.seating import DECIMALS
@@ -51,6 +52,8 @@ __all__ = [
     "write_result_csv",
     "round_to_steps",
     "round_degrees",
+    "list_bending_columns",
+    "list_bending_values",
     "list_seating_values",
     "round_to_twelve_digits",
 ]
@@ -320,7 +323,7 @@ def list_column_names(result: Result) -> list[str]:
     placed = sum(toolkit.carriers[k].contact.is_placed for k in toolkit.arrangements[0].carriers)
     flats = [f"flat{number}_deg" for number in range(1, 1 + placed * (FLAT_PIN in toolkit.contacts))]
     seating = [figure.key for figure in SEATING_FIGURES] if result.seating else []
-    return [*POSE_COLUMNS, *moved, *figures, *pegs, *flats, *seating]
+    return [*POSE_COLUMNS, *moved, *figures, *pegs, *flats, *seating, *list_bending_columns(result)]
 
 
 def list_seating_values(result: Result) -> list[list[float]]:
@@ -332,14 +335,29 @@ def list_seating_values(result: Result) -> list[list[float]]:
     return known + [[nan] * len(SEATING_FIGURES)] * (len(result) - len(known))
 
 
+def list_bending_columns(result: Result) -> Sequence[str]:
+    """Return the names of the columns of bending; () for a result without any."""
+    return BENDING_COLUMNS if result.bending else ()
+
+
+def list_bending_values(result: Result, row: int) -> list[float | None]:
+    """Return the values of :func:`list_bending_columns` of the fixture at a row; None for those not known."""
+    if not result.bending:
+        return []
+    bent = result.bending.get(row)
+    return [None] * len(BENDING_COLUMNS) if bent is None else bent.list_values()
+
+
 def write_hold_csv(result: Result) -> Iterator[str]:
     """Yield the CSV table, in one piece, of a result whose fixtures hold by friction."""
     from workhold.files.result.hold_text import list_hold_columns, list_hold_rows
 
     lines = io.StringIO()
     table = csv.writer(lines, lineterminator="\n")
-    table.writerow(list_hold_columns(result.query))
-    table.writerows(["" if value is None else value for value in row] for row in list_hold_rows(result))
+    table.writerow([*list_hold_columns(result.query), *list_bending_columns(result)])
+    for place, row in enumerate(list_hold_rows(result)):
+        values = [*row, *list_bending_values(result, place)]
+        table.writerow(["" if value is None else value for value in values])
     yield lines.getvalue()
 
 
@@ -374,6 +392,8 @@ def write_result_csv(result: Result) -> Iterator[str]:
                 fields += [
                     "" if isnan(value) else repr(round(value, DECIMALS)) for value in seated[number - 1]
                 ]
+            bent = list_bending_values(result, number - 1)
+            fields += ["" if value is None else repr(value) for value in bent]
             lines.append(",".join(fields) + "\n")
         yield "".join(lines)
 

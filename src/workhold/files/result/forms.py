@@ -328,6 +328,9 @@ class Head(FormPart):
     least_effective_error: Annotated[float, Field(ge=0)] | None = Field(
         None, description="mm, of all that is fit and without warning; from it the steps of the order count"
     )
+    bent_by: Literal["clamp_distortion", "give"] | None = Field(
+        None, description="the figure of bending by which the fixtures that have it are listed first"
+    )
 
     def to_toolkit(self) -> Toolkit:
         """Return the toolkit; raise InputError for a head with no toolkit, or with two."""

@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, ValidationError
 
 from workhold.errors import InputError
+from workhold.files.result.bending_forms import BendingPart
 from workhold.files.result.forms import FormPart, describe_first_fault
 from workhold.files.result.strapped import (
     ProgramForcePart,
@@ -25,11 +26,19 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.jaw_hold import JawHold, JawPatch
+from workhold.model.part_bending import BendingFigures
 from workhold.model.pose import Pose
 from workhold.model.query import Query
 from workhold.model.straps import StrappedHold
 
-__all__ = ["AnyHoldPart", "HoldPart", "make_jaw_holds", "read_holds", "make_table_of_holds"]
+__all__ = [
+    "AnyHoldPart",
+    "HoldPart",
+    "make_jaw_holds",
+    "read_bendings_of_holds",
+    "read_holds",
+    "make_table_of_holds",
+]
 
 LARGEST = 1e9
 Whole = Annotated[int, Field(ge=0)]
@@ -91,6 +100,7 @@ class HoldPart(FormPart):
     warnings: list[str] = Field(default=[])
     quality: HoldQualityPart
     program_force: ProgramForcePart | None = None
+    bending: BendingPart | None = None
 
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """Return the fixture with the figures that are written.
@@ -176,6 +186,18 @@ def make_jaw_holds(
                 f"{path}: fixture {number} touches a segment that does not name a face of the part."
             )
     return tuple(part.to_hold(query.toolkit, query.unit_force) for part in parts)
+
+
+def read_bendings_of_holds(parts: Sequence[AnyHoldPart], path: Path) -> dict[int, BendingFigures]:
+    """Return how far fixtures of a file bend their part, by index; raise InputError for a material that cannot be."""
+    found = {}
+    for row, part in enumerate(parts):
+        if part.bending is not None:
+            try:
+                found[row] = part.bending.to_figures()
+            except InputError as error:
+                raise InputError(f"{path}: fixture {row + 1} cannot be used: {error}") from error
+    return found
 
 
 def make_table_of_holds(given: Sequence[AnyHoldPart], toolkit: Toolkit) -> FixtureTable:

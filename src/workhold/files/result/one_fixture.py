@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from attrs import fields, frozen
+from attrs import evolve, fields, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import is_archive
@@ -90,7 +90,10 @@ def read_one(path: str | Path, rank: int) -> Result:
         raise InputError(f"{path}: counts say {said} fixtures, but {found.count} are listed.")
     refuse_missing(path, rank, found.count)
     rows = add_missing_figures(check_table(columns, query, path, found.first), query)
-    return add_seatings(make_result(TableOfFile(rows, found, path), head, query, path), columns.seating, path)
+    result = add_seatings(
+        make_result(TableOfFile(rows, found, path), head, query, path), columns.seating, path
+    )
+    return evolve(result, bending=columns.bending, bent_by=head.bent_by)
 
 
 def refuse_missing(path: Path, rank: int, count: int) -> None:

@@ -7,23 +7,30 @@ determine its form, not its name. Messages count fixtures and pegs from 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from attrs import evolve, frozen
+from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.archive import is_archive
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
+from workhold.files.result.bending_forms import add_bendings, check_bending
 from workhold.files.result.columns import read_columns
 from workhold.files.result.fixture_forms import add_seatings, check_seating
 from workhold.files.result.hold_text import is_friction_fixture
-from workhold.files.result.holds import AnyHoldPart, make_jaw_holds, make_table_of_holds, read_holds
+from workhold.files.result.holds import (
+    AnyHoldPart,
+    make_jaw_holds,
+    make_table_of_holds,
+    read_bendings_of_holds,
+    read_holds,
+)
 from workhold.files.result.parts import (
     LARGEST_LENGTH,
     LARGEST_NUMBER,
@@ -37,6 +44,7 @@ from workhold.files.result.parts import (
 from workhold.fixels.carrier import WALL
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture_table import FixtureTable, compute_peg_places
+from workhold.model.part_bending import BendingFigures
 from workhold.model.pose import Pose
 from workhold.model.quality import (
     BEFORE_PINS,
@@ -69,6 +77,7 @@ class FixtureArrays:
     placing : (N, 5) theta in degrees, x and y in mm, jaw separation in mm and number of pairs.
     quality : (N, Q), Q figures of quality, the program clearance last; NaN where the file gives none.
     seating : seatings of the first fixtures, as the file gives them.
+    bending : how far fixtures bend their part, by their index in the file.
     """
 
     types: NDArray[np.str_]
@@ -78,6 +87,7 @@ class FixtureArrays:
     placing: NDArray[np.float64]
     quality: NDArray[np.float64]
     seating: tuple[Seating, ...] = ()
+    bending: Mapping[int, BendingFigures] = field(factory=dict)
 
 
 def read_result(path: str | Path) -> Result:
@@ -106,14 +116,14 @@ def read_result(path: str | Path) -> Result:
         columns = []
     if isinstance(columns, list):
         holds = make_jaw_holds(columns, query, path)
-        return evolve(
-            make_result_from_counts(make_table_of_holds(columns, query.toolkit), head, query, path),
-            holds=holds,
-        )
+        made = make_result_from_counts(make_table_of_holds(columns, query.toolkit), head, query, path)
+        bending = read_bendings_of_holds(columns, path)
+        return add_bendings(evolve(made, holds=holds), bending, head.bent_by, path)
     result = make_result_from_counts(
         add_missing_figures(check_table(columns, query, path), query), head, query, path
     )
-    return add_seatings(result, columns.seating, path)
+    result = add_seatings(result, columns.seating, path)
+    return add_bendings(result, columns.bending, head.bent_by, path)
 
 
 def collect_any_fixtures(fixtures: Iterable[Any], path: Path) -> FixtureArrays | list[AnyHoldPart]:
@@ -140,6 +150,7 @@ def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Fixt
     blocks: list[list[NDArray[Any]]] = [[] for _ in range(6)]
     iterator = iter(fixtures)
     number, pegs, seating = first + 1, 0, list[Seating]()
+    bending: dict[int, BendingFigures] = {}
     while True:
         rows = []
         for fixture in islice(iterator, BLOCK):
@@ -156,6 +167,8 @@ def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Fixt
                     )
                 theta, x, y, *_ = rows[-1][4]
                 seating.append(check_seating(fixture["seating"], Pose(theta, x, y), path, number))
+            if fixture.get("bending") is not None:
+                bending[number - 1] = check_bending(fixture["bending"], path, number)
             number += 1
         kinds = (np.str_, np.str_, np.int32, np.float64, np.float64, np.float64)
         pegs = pegs or (len(rows[0][1]) if rows else 4)
@@ -169,7 +182,7 @@ def collect_columns(fixtures: Iterable[Any], path: Path, first: int = 0) -> Fixt
             blocks[k].append(np.array([row[k] for row in rows], dtype=kind).reshape(len(rows), *shape))
         if len(rows) < BLOCK:
             types, jaws, holes, contacts, placing, quality = map(np.concatenate, blocks)
-            return FixtureArrays(types, jaws, holes, contacts, placing, quality, tuple(seating))
+            return FixtureArrays(types, jaws, holes, contacts, placing, quality, tuple(seating), bending)
 
 
 def make_fixture_row(

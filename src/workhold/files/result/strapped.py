@@ -12,6 +12,7 @@ from pydantic import Field
 
 from workhold.conventions import AGREEMENT
 from workhold.errors import InputError
+from workhold.files.result.bending_forms import BendingPart
 from workhold.files.result.forms import FormPart
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture, Peg
@@ -132,6 +133,7 @@ class StrappedSeatPart(FormPart):
     push: PushPart | None
     quality: StrappedQualityPart
     program_force: ProgramForcePart | None = None
+    bending: BendingPart | None = None
 
     def to_fixture(self, toolkit: Toolkit, unit_force: float | None = None) -> Fixture:
         """Return the seat as a fixture, with the figures that are written in the file.

@@ -75,7 +75,9 @@ def write_result_text(result: Result) -> Iterator[str]:
     yield ',\n"fixtures": ['
     separator, count = "\n", 0
     if result.toolkit.holds_by_friction:
-        yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(write_hold_lines(result)))
+        lines = list(write_hold_lines(result))
+        add_bending_entries(lines, result, 0)
+        yield "".join(f"{',' * (number > 0)}\n{line}" for number, line in enumerate(lines))
         yield "\n]}\n"
         return
     for lines in write_fixture_lines(result.table, result.toolkit, result.workpiece):
@@ -86,6 +88,7 @@ def write_result_text(result: Result) -> Iterator[str]:
         ]
         if result.query.program_to_clear is not None:
             lines = add_clearances(lines, result, slice(count, count + len(lines)))
+        add_bending_entries(lines, result, count)
         yield separator + ",\n".join(lines)
         separator, count = ",\n", count + len(lines)
     yield "\n]}\n"
@@ -94,6 +97,18 @@ def write_result_text(result: Result) -> Iterator[str]:
 def add_entry_to_line(line: str, key: str, value: dict[str, Any]) -> str:
     """Return the JSON line of a fixture with a further key and value."""
     return f'{line[:-1]}, "{key}": {json.dumps(value)}}}'
+
+
+def add_bending_entries(lines: list[str], result: Result, first: int) -> None:
+    """Add to the JSON lines of fixtures how far they bend their part, where the result says so.
+
+    ``first`` is the index of the first line's fixture in the result.
+    """
+    if not result.bending:
+        return
+    for place, line in enumerate(lines):
+        if (bent := result.bending.get(first + place)) is not None:
+            lines[place] = add_entry_to_line(line, "bending", bent.to_data())
 
 
 def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
@@ -159,6 +174,7 @@ def make_head(result: Result, with_pieces: bool = True) -> dict[str, Any]:
         **make_notes_entry(result.notes),
         **({} if result.pairs is None else {"pairs": result.pairs, "seats": result.seats}),
         **make_least_error_entry(result),
+        **({} if result.bent_by is None else {"bent_by": result.bent_by}),
         "statistics": {name: int(count) for name, count in result.statistics.items()},
     } | ({} if result.proof is None else {"proof": make_proof_entry(result.proof)})
 
