@@ -16,6 +16,7 @@ from workhold.version import __version__ as __version__
 if TYPE_CHECKING:
     from workhold.completeness import verify
     from workhold.errors import InputError, WorkholdError
+    from workhold.family.family import plan_family
     from workhold.files.part.load import load
     from workhold.files.part.loaded import solids_in
     from workhold.files.result.columns import answer_to_file
@@ -72,6 +73,7 @@ __all__ = [
     "from_build123d",
     "from_cadquery",
     "load",
+    "plan_family",
     "polygon_zone",
     "save",
     "seatings",
@@ -109,6 +111,7 @@ HOMES = {
     "from_cadquery": "workhold.presenting.assembly",
     "load": "workhold.files.part.load",
     "open": "workhold.files.result.reader:read_result",
+    "plan_family": "workhold.family.family",
     "polygon_zone": "workhold.model.requirements",
     "save": "workhold.files.result.save",
     "seatings": "workhold.seating.solver",

@@ -7,4 +7,4 @@ __all__ = ["ANSWERS", "__version__"]
 __version__ = "0.1.0"
 # Is raised whenever the same question may get another answer, or the same answer other bytes in a file, within
 # a version: records of batches from before are then made anew.
-ANSWERS = 2
+ANSWERS = 3

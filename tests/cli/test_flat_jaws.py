@@ -36,7 +36,7 @@ def test_a_batch_has_plain_vises_beside_others(run: Any, tmp_path: Any) -> None:
 @pytest.mark.parametrize(
     ("command", "message"),
     [
-        ("family", "a plain vise has no holes to keep pegs in"),
+        ("family", "rectangle.dxf: how thick it is decides which parallels it stands on: give --thickness"),
         ("copies", "a plain vise holds one part"),
         ("seat", "the seating is worked out only for round pegs"),
     ],

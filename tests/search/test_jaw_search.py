@@ -274,3 +274,10 @@ def test_a_part_that_stands_out_comes_before_one_sunk_between_the_jaws():
     result = held(rectangle(), vise(jaw_height=44, parallels=[8, 32]))
     assert [one.hold.above > 0.0 for one in result] == [True] * 4 + [False] * 4
     assert result[0].hold.grip < result[-1].hold.grip
+
+
+def test_of_parts_below_the_jaws_the_least_sunk_comes_first():
+    """A plate thinner than what the highest parallels leave of the jaws lies as high as it can."""
+    result = held(rectangle(80, 40), vise(parallels=[10, 20, 32]), thickness=9.0)
+    parallels = [one.hold.parallels for one in result]
+    assert parallels == sorted(parallels, reverse=True) and set(parallels) == {10, 20, 32}

@@ -117,3 +117,35 @@ def test_parts_of_one_name_are_told_apart(server: RunningServer) -> None:
     answer = server.client.get(f"{url}/family").json()
     assert answer["parts"] == ["ell-1", "ell-1 (2)"]
     assert [one["setups"] for one in answer["points"]] == [1]
+
+
+BLOCKS = [
+    {"name": name, "loops": [[[0, 0, 0], [width, 0, 0], [width, 40, 0], [0, 40, 0]]]}
+    for name, width in (("low", 90), ("high", 60))
+]
+PLAIN = {"kind": "plain-vise", "jaw_width": 152, "jaw_height": 44, "parallels": [20, 32], "stop": "left"}
+
+
+def test_blocks_in_a_plain_vise_have_their_own_thickness(server: RunningServer) -> None:
+    """The loss is of the grip, and changes of parallels and stop are counted."""
+    body = {"workpieces": BLOCKS, "toolkit": PLAIN, "thicknesses": [16, 45]}
+    url = server.done(body, "/api/families")
+    answer = server.client.get(f"{url}/family").json()
+    assert answer["figure"] == "grip" and not answer["left_out"]
+    assert [(one["setups"], one["loss"], one["changes"]) for one in answer["points"]] == [
+        (1, 2.0, 0),
+        (2, 1.0, 1),
+    ]
+    sheets = server.client.get(f"{url}/family/sheets.svg", params={"setups": 2}).text
+    assert "Parallels of 20 mm" in sheets and "change the parallels, the stop stays" in sheets
+    plan = json.loads(server.client.get(f"{url}/family/plans.json").text)["family"]["curve"][1]["plan"]
+    assert [setup["parallels"] for setup in plan] == [20, 32]
+
+
+def test_a_thickness_that_is_missing_is_named(server: RunningServer) -> None:
+    url = server.submit({"workpieces": BLOCKS, "toolkit": PLAIN, "thicknesses": [16]}, "/api/families")
+    server.wait(url) if hasattr(server, "wait") else None
+    state = server.client.get(url).json()
+    while state["state"] not in ("done", "failed", "cancelled"):
+        state = server.client.get(url).json()
+    assert "high: how thick it is decides" in state["error"] and "--" not in state["error"]

@@ -14,11 +14,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from attrs import frozen
 
-from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
+from workhold.cli.commands import (
+    make_default_group,
+    make_flag,
+    make_option,
+    print_remark,
+    spread_option_groups,
+)
 from workhold.cli.ending import INTERRUPTED, ask_to_stop
 from workhold.cli.jobs import list_family_parts, make_family_queries
 from workhold.cli.options import PartOptions
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output
+from workhold.cli.program_options import ProgramOptions
 from workhold.cli.progress import show_search_progress
 from workhold.cli.search_options import QueryOptions
 from workhold.cli.table import Table, format_count, print_tables
@@ -74,8 +81,8 @@ class FamilyOptions:
     limit: list[str] | None = make_option(
         FAMILY,
         "FIGURE=VALUE",
-        "Use no fixture with a worse figure than this, such as location-error=0.05 (mm, N or "
-        "degrees). May be repeated.",
+        "Use no fixture with a worse figure than this, such as location-error=0.05, or grip=6 in a plain "
+        "vise (mm, N or degrees). May be repeated.",
     )
     unfit: bool = make_flag(FAMILY, "Also use fixtures that no workshop can use.", "--unfit")
     both_sides: bool = make_flag(
@@ -95,6 +102,11 @@ class FamilyOptions:
         "SECONDS",
         "Longest time to prove that no fewer set-ups do; then the results so far are reported.",
         default=SECONDS,
+    )
+    thickness: str | None = make_option(
+        FAMILY,
+        "LENGTH",
+        "For a plain vise: thickness of the parts that are drawings; a file of jobs has that of each part.",
     )
     type_: str = make_option(
         FAMILY, "I|II|both", "For a vise: the arrangements of pegs to use.", "--type", default=EVERY_TYPE
@@ -194,12 +206,13 @@ def family(
     written: FamilyOutputOptions,
     reading: PartOptions,
 ) -> None:
-    """Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.
+    """Report which set-ups hold many of PARTS, and what each fewer set-up costs in quality.
 
     The loss of a fixture is its location error, or the first figure of --rank-by, divided by the best that the
     part has in this toolkit: 1 is the best, 2 is twice as bad. For each number of set-ups the report gives the
     smallest loss within which all parts can be held. Give --setups or --max-loss to see where the pegs stand
-    and how each part lies.
+    and how each part lies. In a plain vise a set-up is a pair of parallels with the work stop, and the loss is of
+    the jaw force needed, or of the grip where no loads are given.
 
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """
@@ -226,8 +239,9 @@ def parse(
     from workhold.family.solver import load_solver
 
     load_solver()
-    jobs = list_family_parts(parts, words, reading)
-    files = [name for job in jobs for name in (job.listed.path, job.words.loads)]
+    machined = make_default_group(ProgramOptions, thickness=planned.thickness)
+    jobs = list_family_parts(parts, words, reading, machined, toolkit)
+    files = [name for job in jobs for name in (job.listed.path, job.words.loads, *job.machined.files)]
     written.refuse((*parts, *files, held_in.vise, held_in.toolkit), planned.ask_for_plan)
     members, left_out = make_family_queries(
         jobs, toolkit, tolerance, types, planned.zero, both_sides=planned.both_sides
@@ -307,17 +321,16 @@ def print_family(answer: FamilyAnswer, unit: Unit) -> None:
     for part in found.left_out:
         print_remark(f"{part.name} is left out: {part.reason}.")
     if not found.members:
-        print_tables(f"No pattern holds any of the parts {toolkit.wording.inside}; {spent}.")
+        print_tables(f"No {found.setup_noun} holds any of the parts {toolkit.wording.inside}; {spent}.")
         return
-    from workhold.family.members import describe_loss_figure
+    from workhold.family.members import describe_loss
 
     assert found.table is not None
     print_tables(tabulate_family_curve(found, unit))
     sentences = [
-        f"{format_count(len(found.members), 'part')}, {format_count(len(found.table.words), 'pattern')} that hold at "
+        f"{format_count(len(found.members), 'part')}, {format_count(found.setup_count, found.setup_noun)} that hold at "
         f"least one of them; {spent}.",
-        f"The loss is the {describe_loss_figure(found.figure)} divided by the best that each part "
-        f"has {toolkit.wording.inside}.",
+        describe_loss(found.figure, toolkit.wording.inside),
     ]
     if not all(plan.point.is_least and plan.point.at_least == plan.point.setups for plan in found.plans):
         sentences.append("The time was up before all of it was proven: a longer --time-limit may show less.")
@@ -331,11 +344,19 @@ def print_family(answer: FamilyAnswer, unit: Unit) -> None:
 
 
 def print_plan(plan: FamilyPlan, found: Family, unit: Unit) -> None:
-    """Print for each set-up the holes of its pegs, and how each part lies in it."""
+    """Print for each set-up the holes of its pegs, or parallels and work stop, and how each part lies in it."""
+    from workhold.family.jaw_setups import describe_changes, describe_jaw_setup
+
+    before: SetUp | None = None
     for count, setup in enumerate(plan.setups, 1):
-        holes = ", ".join(peg.hole for peg in setup.standing.fixture.placed)
-        heading = f"Set-up {count} of {len(plan.setups)}: {holes}"
-        place = "" if count == 1 else f" ({setup.moved} to place, the others stay)"
+        heading = f"Set-up {count} of {len(plan.setups)}: "
+        if setup.jaws is None:
+            heading += ", ".join(peg.hole for peg in setup.standing.fixture.placed)
+            place = "" if count == 1 else f" ({setup.moved} to place, the others stay)"
+        else:
+            heading += describe_jaw_setup(setup.jaws, found.toolkit, unit)
+            place = "" if before is None else f" ({describe_changes(setup.jaws, before.jaws)})"
+        before = setup
         print_tables("", f"{heading}{place}", tabulate_setup(setup, found, unit))
         for one in setup.holdings:
             if not one.in_place:
@@ -355,9 +376,8 @@ def tabulate_family_curve(found: Family, unit: Unit) -> Table:
     from workhold.family.members import format_loss
     from workhold.presenting.figure_words import format_figure_number, make_heading
 
-    table = Table(
-        (">set-ups", ">worst loss", ">pegs moved", f">{make_heading(found.figure, unit)}", "worst part")
-    )
+    moved = ">pegs moved" if found.toolkit.flat_jaws is None else ">changes"
+    table = Table((">set-ups", ">worst loss", moved, f">{make_heading(found.figure, unit)}", "worst part"))
     for plan in found.plans:
         point = plan.point
         worst = max((one for setup in plan.setups for one in setup.holdings), key=lambda one: one.loss)
@@ -377,17 +397,20 @@ def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
     fixture, pose, lengths to set, loss and figure.
     """
     from workhold.family.members import format_loss
+    from workhold.model.hold_words import describe_touched_faces
     from workhold.model.setup import list_length_settings
     from workhold.presenting.figure_words import format_figure_number, make_heading
 
     settings = list_length_settings(setup.standing.fixture, found.toolkit)
     names = [f">{setting.short} {unit.abbreviation}" for setting in settings]
+    is_held_by_jaws = setup.jaws is not None
+    places = ("x", "y") if not is_held_by_jaws else ("X0", "Y0")
     columns = (
         "part",
         ">fixture",
+        *(["on the fixed jaw"] if is_held_by_jaws else []),
         ">angle",
-        f">x {unit.abbreviation}",
-        f">y {unit.abbreviation}",
+        *(f">{place} {unit.abbreviation}" for place in places),
         *names,
         ">loss",
     )
@@ -398,12 +421,14 @@ def tabulate_setup(setup: SetUp, found: Family, unit: Unit) -> Table:
         lengths = [
             unit.format_number(setting.length) for setting in list_length_settings(fixture, found.toolkit)
         ]
+        x, y = pose.apply(*one.member.zero.point) if is_held_by_jaws else (pose.x, pose.y)
         table.add_row(
             one.member.name,
             f"{one.number:,}" + ("'" if one.turned else ""),
+            *([] if one.hold is None else [describe_touched_faces(one.hold.fixed)]),
             f"{pose.written_deg:.3f}",
-            unit.format_number(pose.x),
-            unit.format_number(pose.y),
+            unit.format_number(x),
+            unit.format_number(y),
             *lengths,
             format_loss(one.loss),
             format_figure_number(found.figure, one.figure, unit),

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from workhold.files.part_list import ListedPart
     from workhold.fixels.toolkit import Toolkit
     from workhold.model.requirements import Tolerance
+    from workhold.model.workpiece import Workpiece
 
 __all__ = ["JOB_ENDINGS", "make_family_queries", "list_family_parts", "read_jobs"]
 
@@ -202,17 +203,27 @@ class FamilyPart:
     listed: ListedPart
     words: QueryOptions
     reading: PartOptions
+    machined: ProgramOptions
 
 
-def list_family_parts(parts: list[str], words: QueryOptions, reading: PartOptions) -> list[FamilyPart]:
+def list_family_parts(
+    parts: list[str], words: QueryOptions, reading: PartOptions, machined: ProgramOptions, toolkit: Toolkit
+) -> list[FamilyPart]:
     """Return the parts of the command line and of files of jobs, each with its options and a name of its own.
 
-    A name that occurs again gets a number. Raises InputError for a job that names a toolkit or a program.
+    A name that occurs again gets a number. Raises InputError for a job that names a toolkit, and beside pegs for a
+    program or a thickness.
     """
     from workhold.files.part_list import list_parts
 
+    # What flat jaws hold stays where it is; a pattern of pegs may move, and a program was not looked at there.
+    with_programs = toolkit.flat_jaws is not None
+    if machined.thickness is not None and not with_programs:
+        raise InputError(
+            f"--thickness counts in a plain vise, and a family in a {toolkit.noun} is planned without: leave it out."
+        )
     plain = [name for name in parts if Path(name).suffix.lower() not in JOB_ENDINGS]
-    found = [(one, words, reading) for one in list_parts(plain)] if plain else []
+    found = [(one, words, reading, machined) for one in list_parts(plain)] if plain else []
     for name in parts:
         for job in [] if name in plain else read_jobs(Path(name)):
             if job.toolkits is not None:
@@ -220,23 +231,23 @@ def list_family_parts(parts: list[str], words: QueryOptions, reading: PartOption
                     f"{job.place} names a toolkit, but all parts of a family use the toolkit of the command "
                     "line: leave it out."
                 )
-            if job.make_options(ProgramOptions):
+            if job.make_options(ProgramOptions) and not with_programs:
                 raise InputError(
                     f"{job.place} names a program, but a family of parts is planned without one: leave it out."
                 )
             own_words, own_reading = job.replace_options(words), job.replace_options(reading)
+            own_program = job.replace_options(machined)
             try:
                 own_words.read_arguments(read_unit(own_reading.unit))
-                found += [(one, own_words, own_reading) for one in list_parts([job.part])]
+                found += [(one, own_words, own_reading, own_program) for one in list_parts([job.part])]
             except InputError as error:
                 raise InputError(f"{job.place}: {error}") from error
-    called = [shorten_part_name(one.name, [other.name for other, _, _ in found]) for one, _, _ in found]
+    called = [shorten_part_name(one.name, [other.name for other, *_ in found]) for one, *_ in found]
     times, jobs = Counter[str](), []
-    for name, (one, own_words, own_reading) in zip(called, found, strict=True):
+    for name, (one, own_words, own_reading, own_program) in zip(called, found, strict=True):
         times[name] += 1
-        jobs.append(
-            FamilyPart(name if times[name] == 1 else f"{name} ({times[name]})", one, own_words, own_reading)
-        )
+        numbered = name if times[name] == 1 else f"{name} ({times[name]})"
+        jobs.append(FamilyPart(numbered, one, own_words, own_reading, own_program))
     return jobs
 
 
@@ -262,8 +273,8 @@ def make_family_queries(
     """Return a query for each part that can be read, and the other parts with the reasons.
 
     ``both_sides`` adds a query of each part turned over, for which the file of a solid is read again. Remarks
-    are printed. Raises InputError for a part zero that a part does not have, and for faces whose numbers are
-    not certain.
+    are printed. Raises InputError for a part zero that a part does not have, for faces whose numbers are not
+    certain, and for what cannot be asked of a part.
     """
     from hashlib import sha256
 
@@ -275,11 +286,14 @@ def make_family_queries(
     from workhold.model.setup import choose_part_zero
     from workhold.model.solid import flip_up_axis
 
-    usual = RANKINGS[toolkit.travel_count]
+    usual, in_vise = RANKINGS[toolkit.travel_count], toolkit.flat_jaws is not None
     members, left_out = [], []
     for job in jobs:
+        reading = (
+            job.machined.adapt_part_options(job.listed.path.name, job.reading) if in_vise else job.reading
+        )
         options = {
-            **job.reading.to_read_arguments(),
+            **reading.to_read_arguments(),
             "heights": toolkit.heights,
             "peg_diameter": toolkit.peg_diameter,
         }
@@ -289,21 +303,24 @@ def make_family_queries(
             continue
         for remark in read.loaded.remarks:
             print_remark(f"{job.name}: {remark}")
-        unit = read_unit(job.reading.unit)
-        asked = job.words.read_arguments(unit)
-        asked["tolerance"] = add_dowel_fit(asked["tolerance"], tolerance)
-        asked["rank_by"] = asked["rank_by"] or (None if toolkit.holds_by_friction else usual)
         workpiece = read.loaded.workpiece
-        try:
-            refuse_unsure_numbers(read.loaded, asked["restrictions"].avoid, CALLED)
-        except InputError as error:
-            raise InputError(f"{job.name}: {error}") from error
         digest = sha256(Path(path).read_bytes()).hexdigest() if Path(path).is_file() else ""
         try:
-            at = choose_part_zero(workpiece, zero, unit)
+            asked = make_member_arguments(job, workpiece, toolkit, tolerance)
+            asked["rank_by"] = asked["rank_by"] or (None if toolkit.holds_by_friction else usual)
+            refuse_unsure_numbers(read.loaded, asked["restrictions"].avoid, CALLED)
+            # Where a program has X0 Y0, there the work offset of its part is set.
+            named = zero if job.machined.program is None else job.machined.zero
+            at = choose_part_zero(workpiece, named, read_unit(job.reading.unit))
+            query = Query(workpiece, toolkit, types, **asked)
+            if both_sides and (query.program is not None or query.raw is not None):
+                raise InputError(
+                    "its other side has a program of its own, and no raw block: name it in a file of jobs, once for each "
+                    "side."
+                )
         except InputError as error:
             raise InputError(f"{job.name}: {error}") from error
-        one = MemberRequest(job.name, Query(workpiece, toolkit, types, **asked), str(path), digest, at)
+        one = MemberRequest(job.name, query, str(path), digest, at)
         members.append(one)
         if not both_sides:
             continue
@@ -316,3 +333,25 @@ def make_family_queries(
         else:
             members.append(one.turn_over(read.loaded.workpiece))
     return members, left_out
+
+
+def make_member_arguments(
+    job: FamilyPart, workpiece: Workpiece, toolkit: Toolkit, tolerance: Tolerance | None
+) -> dict[str, Any]:
+    """Return the keyword arguments of the query of a member, without part, toolkit and types.
+
+    In a plain vise thickness and program are among them. Raises InputError where the thickness is not known there.
+    """
+    unit, machined = read_unit(job.reading.unit), job.machined
+    in_vise = toolkit.flat_jaws is not None
+    has_program = in_vise and machined.program is not None
+    asked = job.words.read_arguments(unit, has_program, has_program and machined.has_forces)
+    asked["tolerance"] = add_dowel_fit(asked["tolerance"], tolerance)
+    if not in_vise:
+        return asked
+    heights = machined.read_query_arguments(unit, job.reading.peg_height, workpiece)
+    if workpiece.solid is None and heights.get("thickness") is None:
+        raise InputError(
+            "how thick it is decides which parallels it stands on: give --thickness, or thickness in a file of jobs."
+        )
+    return asked | heights

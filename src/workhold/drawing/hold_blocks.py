@@ -67,7 +67,7 @@ def draw_hold_panel(
         )
     column.write_fact("Fixed jaw on", describe_touched_faces(hold.fixed))
     column.write_fact("Moving jaw on", describe_touched_faces(hold.moving))
-    column.write_fact("Work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none")
+    column.write_fact("Work stop", describe_work_stop(hold.stop, jaws.stop_offset, lengths.unit) or "none")
     column.write_fact("Part turned by θ", format_degrees(fixture.pose.written_deg, 3))
     column.draw_rule()
     write_figures(column, fixture, lengths)
@@ -154,7 +154,7 @@ def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
     column.write_fact("on the fixed jaw", describe_touched_faces(hold.fixed), bold=True)
     column.write_fact("the moving jaw presses", describe_touched_faces(hold.moving), bold=True)
     column.write_fact(
-        "work stop", describe_work_stop(hold, jaws.stop_offset, lengths.unit) or "none", bold=True
+        "work stop", describe_work_stop(hold.stop, jaws.stop_offset, lengths.unit) or "none", bold=True
     )
     ends = min(hold.fixed.ends[0], hold.moving.ends[0]), max(hold.fixed.ends[1], hold.moving.ends[1])
     column.write_fact(

@@ -1,4 +1,4 @@
-"""Families of parts: which peg patterns hold many parts, and what each fewer set-up costs.
+"""Families of parts: which set-ups hold many parts, and what each fewer set-up costs.
 
 Glossary
 --------
@@ -8,6 +8,7 @@ pattern : the places of the pegs relative to each other, without faces, pose and
     the locators, with each clamp's direction, line and, where it has one, hole. On a fence the locator's row
     takes the place of the offsets. Moving all pegs by whole lattice steps gives the same pattern. A pattern
     holds a part when a fixture of the part, as listed or after half a turn of everything, has it.
+    Between flat jaws, which have no pegs, it is the height of the parallels and the place of the work stop.
 words : the whole numbers, W to a pattern, in which patterns are written; equal for equal patterns.
 identity : the words of a pattern; patterns are sorted by them.
 loss : the first ranking figure of a fixture divided by the best value that the part has in the toolkit, or

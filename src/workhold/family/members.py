@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from workhold.contact.problem import Problem
 from workhold.conventions import FIGURE_DECIMALS
 from workhold.errors import InputError
+from workhold.family.jaw_setups import StopRange
 from workhold.family.patterns import (
     encode_patterns,
     encode_zeros,
@@ -28,6 +29,7 @@ from workhold.family.patterns import (
 from workhold.listing.canonical_form import mark_changes
 from workhold.listing.ranking import measure_table
 from workhold.model.fixture_table import FixtureTable
+from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
 from workhold.model.quality import (
     FIGURE_RANKING,
     FIGURES,
@@ -56,6 +58,7 @@ __all__ = [
     "RANKINGS",
     "Member",
     "FigureThreshold",
+    "describe_loss",
     "describe_loss_figure",
     "format_loss",
     "compute_losses",
@@ -94,14 +97,16 @@ def make_threshold(name: str, value: float) -> FigureThreshold:
     Raises
     ------
     InputError
-        For a name that is not a figure.
+        For a name that is neither a figure of pegs nor one of flat jaws.
     """
-    number = find_figure_number(name)
-    if number is None:
+    number, key = find_figure_number(name), name.strip().lower().replace("-", "_").replace(" ", "_")
+    between_jaws = next((figure for figure in HOLD_FIGURES if figure.key == key), None)
+    if number is None and between_jaws is None:
         raise InputError(
-            f"{name!r} is not a figure: choose among {', '.join(figure.option for figure in FIGURES)}."
+            f"{name!r} is not a figure: choose among {', '.join(figure.option for figure in FIGURES)}, or for a plain "
+            f"vise among {', '.join(figure.option for figure in HOLD_FIGURES)}."
         )
-    return FigureThreshold(FIGURES[number], value)
+    return FigureThreshold(between_jaws or FIGURES[number or 0], value)
 
 
 def describe_loss_figure(figure: Figure) -> str:
@@ -109,6 +114,18 @@ def describe_loss_figure(figure: Figure) -> str:
     error.
     """
     return f"effective {figure.words}" if figure.key == LOCATION else figure.words
+
+
+def describe_loss(figure: Figure, inside: str) -> str:
+    """Return a sentence that says what the loss is; ``inside`` are words such as "in this vise".
+
+    >>> describe_loss(FIGURES[0], "in this vise")
+    'The loss is the best closure margin that each part has in this vise, divided by the closure margin.'
+    """
+    words = describe_loss_figure(figure)
+    if figure.more_is_better:
+        return f"The loss is the best {words} that each part has {inside}, divided by the {words}."
+    return f"The loss is the {words} divided by the best that each part has {inside}."
 
 
 def compute_losses(values: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
@@ -267,6 +284,9 @@ class Member:
     number : (P,) index, from 0 in the list of all fixtures, of the best fixture that has each pattern.
     turned : (P,) whether that fixture has the pattern only after half a turn of everything.
     table : the P fixtures as they stand in their patterns: as listed, or after half a turn of everything.
+    figure : of which losses are computed.
+    holds : how flat jaws hold the part in each of the P fixtures; empty with pegs.
+    stop_ranges : where the tip of a work stop can stop the part in each of them; empty with pegs.
     """
 
     name: str
@@ -282,6 +302,9 @@ class Member:
     number: IntArray
     turned: NDArray[np.bool_]
     table: FixtureTable
+    figure: Figure
+    holds: tuple[JawHold, ...] = ()
+    stop_ranges: tuple[StopRange, ...] = ()
 
 
 def make_member(
@@ -329,7 +352,7 @@ def make_member(
     first = order[mark_changes(list(words[order].T))]
     kept = spill_to_disk(table.take(used[first]))
     chosen = words[first], cost[first], number[used[first]], turn[first], kept
-    return Member(name, path, digest, query, zero, len(result), count, best, *chosen)
+    return Member(name, path, digest, query, zero, len(result), count, best, *chosen, figure)
 
 
 def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.bool_]) -> int:

@@ -1,7 +1,7 @@
 """The pages of a family: its curve drawn, and the sheets of a plan, a page for each set-up.
 
 On the curve the number of set-ups grows to the right and the worst loss upward. The page of a set-up has at
-the left its plan, the pegs with their holes, holding its first part. At the right it has every part as it
+the left its plan, the pegs with their holes or the vise, holding its first part. At the right it has every part as it
 lies, to one scale, above a table of what is set and programmed for each. More parts than ``MOST_BESIDE`` go
 on further pages.
 """
@@ -14,7 +14,7 @@ from datetime import date
 from itertools import pairwise
 from math import ceil, floor, isfinite, log10
 
-from attrs import frozen
+from attrs import evolve, frozen
 
 from workhold.drawing.annotation import draw_scale_bar
 from workhold.drawing.bench import BenchDrawing, draw_bench, draw_zero, make_bench
@@ -34,8 +34,11 @@ from workhold.drawing.scene import (
 )
 from workhold.family.covering import Point
 from workhold.family.family import Family
-from workhold.family.members import describe_loss_figure, format_loss
+from workhold.family.jaw_setups import describe_changes, describe_jaw_setup
+from workhold.family.members import describe_loss, format_loss
 from workhold.family.plan import FamilyPlan, Holding, SetUp
+from workhold.model.hold_words import describe_coefficients, describe_parallel_places, describe_touched_faces
+from workhold.model.jaw_hold import HOLD_FIGURES
 from workhold.model.quality import Figure
 from workhold.model.setup import list_length_settings
 from workhold.units import MILLIMETRE, Unit
@@ -63,10 +66,7 @@ def draw_curve(family: Family, chosen: Point | None = None) -> str:
     width, height = LANDSCAPE
     group = scene.group("heading")
     group.add_text((EDGE, EDGE + 12), held, 26, bold=True)
-    words = (
-        f"The loss is the {describe_loss_figure(family.figure)} over the best that each part has; at each point that "
-        "of the worst part."
-    )
+    words = f"{describe_loss(family.figure, family.toolkit.wording.inside)} At each point it is that of the worst part."
     group.add_text((EDGE, EDGE + 44), words, 15, fill=GREY)
     room = Box(EDGE + AT_LEFT, EDGE + CURVE_HEADER, width - EDGE - 30, height - EDGE - BELOW)
     points = [point for point in family.points if isfinite(point.loss)]
@@ -193,10 +193,7 @@ def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Pa
 
     ``before`` is the set-up before it, None for the first one; ``number`` is its own, from 1.
     """
-    benches = [
-        (one, make_bench(one.fixture, one.member.query.workpiece, one.member.query.toolkit))
-        for one in setup.holdings
-    ]
+    benches = [(one, make_setup_bench(one, setup)) for one in setup.holdings]
     beside, rest = benches[:MOST_BESIDE], benches[MOST_BESIDE:]
     width, height = LANDSCAPE
     whole = Box(EDGE, EDGE + HEADER, width - EDGE, height - EDGE - FOOTER)
@@ -211,16 +208,36 @@ def draw_setup_pages(setup: SetUp, before: SetUp | None, number: int, titles: Pa
         yield scene
 
 
+def make_setup_bench(one: Holding, setup: SetUp) -> BenchDrawing:
+    """Return a part as it lies in a set-up, with the work stop of a plain vise where the set-up has it."""
+    bench = make_bench(one.fixture, one.member.query.workpiece, one.member.query.toolkit)
+    jaws = bench.shown.jaws
+    if jaws is None or jaws.stop is None or setup.jaws is None:
+        return bench
+    stop, half = jaws.stop, jaws.stop.height / 2
+    moved = evolve(stop, y0=setup.jaws.level - half, y1=setup.jaws.level + half)
+    return evolve(bench, shown=evolve(bench.shown, jaws=evolve(jaws, stop=moved)))
+
+
 def begin_page(setup: SetUp, before: SetUp | None, number: int, titles: PageTitles) -> Scene:
     """Return a page with its heading: the set-up's number, the holes of its pegs, and which pegs are moved
     for it.
+
+    Of a plain vise it has the parallels and the work stop instead.
     """
     heading = f"Set-up {number} of {titles.count}: {format_count(len(setup.holdings), 'part')}"
     scene = Scene.make_page(LANDSCAPE, heading)
     group = scene.group("heading")
     group.add_text((EDGE, EDGE + 12), heading, 26, bold=True)
-    lines = [f"Pegs in {', '.join(list_holes(setup))}.", *describe_heights(setup, titles.lengths)]
-    lines += describe_moves(setup, before)
+    if setup.jaws is None:
+        lines = [f"Pegs in {', '.join(list_holes(setup))}.", *describe_heights(setup, titles.lengths)]
+        lines += describe_moves(setup, before)
+    else:
+        toolkit, unit = setup.standing.member.query.toolkit, titles.lengths.unit
+        words = describe_jaw_setup(setup.jaws, toolkit, unit)
+        lines = [f"{words[:1].upper()}{words[1:]}."]
+        if before is not None:
+            lines.append(f"After the set-up before: {describe_changes(setup.jaws, before.jaws)}.")
     for k, line in enumerate(lines):
         group.add_text((EDGE, EDGE + 42 + 20 * k), shorten_text(line, LINE, LANDSCAPE[0] - 2 * EDGE), LINE)
     return scene
@@ -267,8 +284,8 @@ def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
 def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -> None:
     """Draw the plan of a set-up's pegs into a page box, holding one of its parts."""
     one = setup.standing
-    workpiece, toolkit = one.member.query.workpiece, one.member.query.toolkit
-    bench = make_bench(one.fixture, workpiece, toolkit)
+    workpiece = one.member.query.workpiece
+    bench = make_setup_bench(one, setup)
     inner = Box(room.x0 + LEFT, room.y0 + TOP, room.x1 - RIGHT, room.y1 - BOTTOM)
     view = View.fit_box(bench.extent, inner)
     draw_plan(scene, bench, view, workpiece, room, lengths)
@@ -285,7 +302,7 @@ def draw_parts(
     rows = [make_table_row(one, titles) for one, _ in benches]
     notes = [
         line
-        for note in list_notes([one for one, _ in benches])
+        for note in list_notes([one for one, _ in benches], titles.lengths)
         for line in wrap_text(note, SMALL, room.width)
     ]
     head = make_table_head(benches[0][0], titles)
@@ -338,35 +355,64 @@ def make_grid(count: int, room: Box) -> list[Box]:
 
 def make_table_head(one: Holding, titles: PageTitles) -> list[str]:
     """Return the headings of the table of parts."""
-    sign, of = titles.lengths.sign, titles.figure.unit
+    sign = titles.lengths.sign
     settings = list_length_settings(one.fixture, one.member.query.toolkit)
-    unit = sign if of == "mm" else of
     lengths = [
         f"{name} {sign}"
         for name in (*(f"{one.place} {one.sign}".strip() for one in settings), "X0 at x", "Y0 at y")
     ]
-    return ["part", *lengths, "turned θ", f"{titles.figure.words} {unit}".strip(), "loss", "fixture"]
+    faces = [] if one.hold is None else ["on the fixed jaw"]
+    figures = [format_figure_heading(figure, sign) for figure in list_shown_figures(one)]
+    return ["part", *faces, *lengths, "turned θ", *figures, "loss", "fixture"]
+
+
+def list_shown_figures(one: Holding) -> list[Figure]:
+    """Return the figures of a part that a table shows: that of the losses, and between flat jaws also the jaw force,
+    the grip and what stands above the jaws, those that are known.
+    """
+    figure, hold = one.member.figure, one.hold
+    if hold is None:
+        return [figure]
+    more = [other for other in HOLD_FIGURES if other.key in ("clamp_needed", "grip", "above")]
+    return [figure, *(other for other in more if other != figure and getattr(hold, other.key) is not None)]
+
+
+def format_figure_heading(figure: Figure, sign: str) -> str:
+    """Return the name of a figure with its unit; ``sign`` is that of lengths."""
+    words = "jaw force" if figure.key == "clamp_needed" else figure.words
+    return f"{words} {sign if figure.unit == 'mm' else figure.unit}".strip()
+
+
+def format_figure_value(one: Holding, figure: Figure, lengths: LengthUnit) -> str:
+    """Return a figure of a part as text, between flat jaws "-" where it is not known."""
+    value = one.figure if one.hold is None else getattr(one.hold, figure.key)
+    if value is None:
+        return "-"
+    if figure.unit != "mm":
+        return f"{value:.{figure.decimals}f}"
+    return lengths.format_number(value) if one.hold is None else lengths.format_short_number(value, 5)
 
 
 def make_table_row(one: Holding, titles: PageTitles) -> list[str]:
-    """Return the table row of a part: what to set, its zero, angle, figure, loss, and the number of its
+    """Return the table row of a part: what to set, its zero, angle, figures, loss, and the number of its
     fixture.
     """
     fixture, number = one.fixture, titles.lengths.format_number
     x, y = fixture.pose.apply(*one.member.zero.point)
     return [
         one.member.name,
+        *([] if one.hold is None else [describe_touched_faces(one.hold.fixed)]),
         *(number(setting.length) for setting in list_length_settings(fixture, one.member.query.toolkit)),
         number(x),
         number(y),
         f"{fixture.pose.written_deg:z.4f}°",
-        number(one.figure) if titles.figure.unit == "mm" else f"{one.figure:.{titles.figure.decimals}f}",
+        *(format_figure_value(one, figure, titles.lengths) for figure in list_shown_figures(one)),
         format_loss(one.loss),
         f"{one.number:,}{'′' if one.turned else ''}{'' if one.in_place else '*'}",
     ]
 
 
-def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
+def list_notes(holdings: Sequence[Holding], lengths: LengthUnit) -> Iterator[str]:
     """Yield the notes below the table: on part zero, on the signs, and on parts whose pegs stand in other
     columns.
     """
@@ -380,9 +426,28 @@ def list_notes(holdings: Sequence[Holding]) -> Iterator[str]:
     if any(one.turned for one in holdings):
         swapped = f", which swaps the {toolkit.moving.noun}s" if len(toolkit.plates) > 1 else ""
         yield f"′: that fixture after half a turn of everything{swapped}."
+    if any(one.hold is not None for one in holdings):
+        yield from list_vise_notes(holdings, lengths)
     for one in holdings:
         if not one.in_place:
             yield f"* {one.member.name}: the same pegs in {', '.join(peg.hole for peg in one.fixture.pegs)}."
+
+
+def list_vise_notes(holdings: Sequence[Holding], lengths: LengthUnit) -> Iterator[str]:
+    """Yield the notes of parts in a plain vise: on what they lie, on parallels that stand away from a jaw, and on
+    the jaw force.
+    """
+    first = holdings[0].hold
+    assert first is not None
+    on = "the parallels" if first.parallels else "the bed of the vise"
+    yield f"All parts lie on {on}: Z of their lower sides is the same."
+    if any(one.hold is not None and one.hold.clamp_needed is not None for one in holdings):
+        query = holdings[0].member.query
+        yield f"Close with the jaw force or more. {describe_coefficients(query)}"
+    for one in holdings:
+        if one.hold is not None and one.hold.has_moved_parallels:
+            places = describe_parallel_places(one.hold, lengths.unit)
+            yield f"{one.member.name}: tools come through, so put the parallels {places}."
 
 
 def compute_column_widths(head: list[str], rows: list[list[str]], width: float) -> list[float]:

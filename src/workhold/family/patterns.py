@@ -26,6 +26,7 @@ __all__ = [
     "list_holes",
     "move_onto_pattern",
     "encode_patterns",
+    "encode_places",
     "shift_fixture",
     "rotate_fixtures_by_half_turn",
     "encode_zeros",
@@ -118,13 +119,14 @@ def encode_zeros(table: FixtureTable, toolkit: Toolkit, zero: PartZero) -> IntAr
         else find_least_counted(table.row.astype(np.int64), counts[:, :, 1])[:, 0]
     )
     x, y = rotate_vectors(zero.point[0], zero.point[1], table.theta)
-    degrees = np.degrees(table.theta) + SAME_TURN / 2
-    places = [
-        (x + table.position[:, 0] - column * pitch[0]) / SAME_ZERO,
-        (y + table.position[:, 1] - row * pitch[1]) / SAME_ZERO,
-        # A hair below a whole turn is none.
-        (degrees % 360.0) / SAME_TURN,
-    ]
+    x, y = x + table.position[:, 0] - column * pitch[0], y + table.position[:, 1] - row * pitch[1]
+    return encode_places(x, y, np.degrees(table.theta))
+
+
+def encode_places(x: NDArray[np.float64], y: NDArray[np.float64], degrees: NDArray[np.float64]) -> IntArray:
+    """Return (N, 3) whole numbers: places (x, y) in mm and turns in degrees, each rounded to steps."""
+    # A hair below a whole turn is none.
+    places = [x / SAME_ZERO, y / SAME_ZERO, ((degrees + SAME_TURN / 2) % 360.0) / SAME_TURN]
     return np.stack([np.floor(values + BEGINNING).astype(np.int64) for values in places], axis=1)
 
 

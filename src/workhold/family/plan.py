@@ -4,7 +4,7 @@ The order is that in which the fewest pegs are moved. A set-up may stand anywher
 toolkit has no end. Two set-ups one after the other share the pegs that stand in the same holes, and the rest
 is moved. Up to ``MOST_EXACT`` set-ups the order is the shortest path through all of them (Held & Karp,
 *A dynamic programming approach to sequencing problems*, 1962). With more, it goes from each to the nearest
-that is left.
+that is left. In a plain vise the parallels and the work stop take the place of pegs.
 """
 
 from __future__ import annotations
@@ -18,11 +18,13 @@ from attrs import evolve, frozen
 from numpy.typing import NDArray
 
 from workhold.family.covering import LossTable, Point
+from workhold.family.jaw_setups import JawSetUp, StopRange, choose_stop_level, list_changed_places
 from workhold.family.members import Member
 from workhold.family.patterns import NOTHING, list_holes, move_onto_pattern, shift_fixture
 from workhold.fixels.toolkit import Toolkit
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
+from workhold.model.jaw_hold import JawHold
 from workhold.model.quality import find_figure_number
 
 __all__ = [
@@ -191,6 +193,8 @@ class Holding:
     row : the fixture as it stands in the set-up, a table of one row.
     in_place : whether its pegs stand in the holes of the set-up; False in a vise whose largest opening, or
         smallest gap, needs other columns.
+    hold : how flat jaws hold it; None with pegs.
+    stop_range : where the tip of a work stop can stop it; None with pegs.
     """
 
     member: Member
@@ -199,15 +203,21 @@ class Holding:
     turned: bool
     row: FixtureTable
     in_place: bool = True
+    hold: JawHold | None = None
+    stop_range: StopRange | None = None
 
     @property
     def fixture(self) -> Fixture:
         """The fixture as it stands in the set-up."""
-        return make_fixture_of_row(self.row, self.member.query.toolkit, 0, self.member.query.workpiece)
+        query = self.member.query
+        return evolve(make_fixture_of_row(self.row, query.toolkit, 0, query.workpiece), hold=self.hold)
 
     @property
     def figure(self) -> float:
-        """The fixture's value of the figure of which losses are computed."""
+        """The fixture's value of the figure of which losses are computed; NaN where it is not known."""
+        if self.hold is not None:
+            value = getattr(self.hold, self.member.figure.key)
+            return float("nan") if value is None else float(value)
         return float(self.row.quality[0, find_figure_number(self.member.query.rank_by[0]) or 0])
 
 
@@ -220,12 +230,14 @@ class SetUp:
     pattern : its number among all patterns of the family, in the order of their identities.
     holdings : at least one, in the order of the family.
     moved : number of pegs to place because they did not stand there in the set-up before; in the first
-        set-up, of all pegs.
+        set-up, of all pegs. In a plain vise it counts the parallels and the work stop.
+    jaws : parallels and work stop of a plain vise; None with pegs.
     """
 
     pattern: int
     holdings: tuple[Holding, ...]
     moved: int
+    jaws: JawSetUp | None = None
 
     @property
     def standing(self) -> Holding:
@@ -264,20 +276,67 @@ def make_plan(point: Point, table: LossTable, members: Sequence[Member]) -> Fami
     setups = []
     for place, pattern in enumerate(point.patterns):
         held = [members[number] for number in np.flatnonzero(suits == place).tolist()]
-        if held:
-            setups.append(
-                SetUp(pattern, align_holdings([make_holding(one, table.words[pattern]) for one in held]), 0)
-            )
-    return FamilyPlan(point, sort_in_best_order(setups))
+        holdings = [make_holding(one, table.words[pattern]) for one in held]
+        if holdings and holdings[0].hold is not None:
+            jaws = JawSetUp.from_words(table.words[pattern].tolist())
+            setups.append(SetUp(pattern, tuple(holdings), 0, jaws))
+        elif holdings:
+            setups.append(SetUp(pattern, align_holdings(holdings), 0))
+    return FamilyPlan(point, sort_in_best_order(place_stops(setups)))
 
 
 def make_holding(member: Member, words: NDArray[np.int64]) -> Holding:
     """Return the best fixture of a member that has the pattern ``words`` (W,)."""
     place = int(np.flatnonzero((member.words == words).all(axis=1))[0])
     row = member.table.take(slice(place, place + 1))
-    return Holding(
+    holding = Holding(
         member, int(member.number[place]) + 1, float(member.loss[place]), bool(member.turned[place]), row
     )
+    if not member.holds:
+        return holding
+    return evolve(holding, hold=member.holds[place], stop_range=member.stop_ranges[place])
+
+
+def place_stops(setups: Sequence[SetUp]) -> list[SetUp]:
+    """Return the set-ups with the tip of each work stop where it suits all parts, at one place in as many of them
+    as possible.
+
+    Set-ups with pegs, and without a stop, are returned unchanged.
+    """
+    out = list(setups)
+    ends = {setup.jaws.stop for setup in setups if setup.jaws is not None and setup.jaws.stop is not None}
+    for end in sorted(ends):
+        places = [k for k, setup in enumerate(setups) if setup.jaws is not None and setup.jaws.stop == end]
+        # All of them with one stop; else those together whose patterns have the tip at one place.
+        levels = sorted({jaws.level for k in places if (jaws := setups[k].jaws) is not None})
+        for level in levels:
+            level_for_all = find_stop_level([setups[k] for k in places], level)
+            if level_for_all is not None:
+                groups = {level_for_all: places}
+                break
+        else:
+            groups = {}
+            for level in levels:
+                alike = [k for k in places if (jaws := setups[k].jaws) is not None and jaws.level == level]
+                found = find_stop_level([setups[k] for k in alike], level)
+                groups[level if found is None else found] = alike
+        for level, some in groups.items():
+            for k in some:
+                jaws = setups[k].jaws
+                assert jaws is not None
+                out[k] = evolve(setups[k], jaws=evolve(jaws, level=level))
+    return out
+
+
+def find_stop_level(setups: Sequence[SetUp], tried: float) -> float | None:
+    """Return y in mm for the tip of a work stop that serves all parts of some set-ups; None where none is known.
+
+    ``tried`` is a place that serves those of one of them.
+    """
+    held = [one for setup in setups for one in setup.holdings]
+    ranges = [one.stop_range for one in held if one.stop_range is not None]
+    parts = [(one.member.query, one.hold, one.fixture.pose) for one in held if one.hold is not None]
+    return choose_stop_level(ranges, tried, parts)
 
 
 def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
@@ -304,8 +363,14 @@ def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
 def sort_in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
     """Return the set-ups in the order that needs the fewest pegs to be placed, each moved to where this order
     needs it.
+
+    In a plain vise it is the order with the fewest changes of parallels and work stop.
     """
     toolkit = setups[0].holdings[0].member.query.toolkit
+    jaws = [list_changed_places(setup.jaws) for setup in setups if setup.jaws is not None]
+    if jaws:
+        steps = find_best_order(jaws, SetUpFreedom(columns=False, rows=False))
+        return tuple(evolve(setups[step.setup], moved=step.moved) for step in steps)
     holes = [list_holes(setup.standing.row, toolkit) for setup in setups]
     out = []
     for step in find_best_order(holes, find_freedom(toolkit)):

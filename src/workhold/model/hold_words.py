@@ -18,6 +18,7 @@ __all__ = [
     "describe_touched_faces",
     "describe_touched_sides",
     "format_set_force",
+    "format_short_length",
     "list_jaw_cautions",
     "list_hold_reasons",
     "round_force_up",
@@ -52,17 +53,17 @@ def describe_touched_sides(patch: JawPatch, query: Query, unit: Unit) -> str:
     return f"the {format_short_length(long, unit)} side ({words})"
 
 
-def describe_work_stop(hold: JawHold, offset: float, unit: Unit) -> str:
+def describe_work_stop(stop: str | None, offset: float, unit: Unit) -> str:
     """Return a phrase with the end of the jaws at which the work stop is, and its offset in mm if not 0.
 
     It is "" without a work stop.
     """
-    if hold.stop is None:
+    if stop is None:
         return ""
     inward = ""
     if offset:
         inward = f", {format_short_length(abs(offset), unit)} {'inward' if offset > 0 else 'outward'}"
-    return f"{hold.stop} end of the jaws{inward}"
+    return f"{stop} end of the jaws{inward}"
 
 
 def describe_parallel_places(hold: JawHold, unit: Unit) -> str:
@@ -137,7 +138,7 @@ def write_setup_sentences(fixture: Fixture, query: Query, unit: Unit) -> Iterato
     if hold.stop is None:
         yield f"Put it in the middle of the jaws, as there is no stop: {where}"
     else:
-        yield f"Push it against the work stop, {describe_work_stop(hold, jaws.stop_offset, unit)}: {where}"
+        yield f"Push it against the work stop, {describe_work_stop(hold.stop, jaws.stop_offset, unit)}: {where}"
     needed = hold.clamp_needed
     if needed is not None:
         torque = jaws.compute_torque(round_force_up(needed))

@@ -14,7 +14,7 @@ from workhold.model.jaw_hold import JawHold
 from workhold.model.pose import Pose
 from workhold.model.workpiece import Workpiece
 
-__all__ = ["ViseBody", "find_stop_level", "list_parallel_boxes", "list_vise_bodies"]
+__all__ = ["ViseBody", "find_stop_level", "find_stop_stretch", "list_parallel_boxes", "list_vise_bodies"]
 
 # mm. How far outward a jaw whose thickness is not given, and what carries the work stop, reach.
 ENDLESS = 1e4
@@ -45,8 +45,18 @@ def find_stop_level(workpiece: Workpiece, jaws: JawPair, hold: JawHold, pose: Po
     Where only points of the part are farthest out, it is the lowest of them. Without a stop it is the middle
     of the opening.
     """
+    low, high = find_stop_stretch(workpiece, jaws, hold, pose)
+    return (low + high) / 2
+
+
+def find_stop_stretch(workpiece: Workpiece, jaws: JawPair, hold: JawHold, pose: Pose) -> tuple[float, float]:
+    """Return the least and the greatest y in mm of the face of a part that the work stop touches.
+
+    It is the longest straight face at that end. Where only points of the part are farthest out, both are the y
+    of the lowest of them; without a stop, both are the middle of the opening.
+    """
     if hold.stop is None:
-        return hold.opening / 2
+        return hold.opening / 2, hold.opening / 2
     outline, _ = workpiece.find_outline(jaws.name_outline_role(hold.parallels))
     placed = [pose.carry(segment) for segment in outline.segments[: outline.outer_count]]
     points = [point for segment in placed for point in list_far_points(segment)]
@@ -59,8 +69,9 @@ def find_stop_level(workpiece: Workpiece, jaws: JawPair, hold: JawHold, pose: Po
     ]
     if faces:
         low, high = min(faces, key=lambda face: (round(face[0] - face[1], 6), face[0]))
-        return (low + high) / 2
-    return min(y for at, y in points if abs(at - x) < OUTERMOST)
+        return low, high
+    lowest = min(y for at, y in points if abs(at - x) < OUTERMOST)
+    return lowest, lowest
 
 
 def list_far_points(segment: Segment) -> list[tuple[float, float]]:

@@ -61,7 +61,14 @@ from workhold.statics.jaw_clearance import (
 from workhold.statics.jaw_program import CuttingPieces, find_worst_move
 from workhold.statics.patches import PressedPatch, hulls_meet
 
-__all__ = ["RULES", "ExaminedHold", "JawSearch", "find_fixtures_between_jaws"]
+__all__ = [
+    "RULES",
+    "ExaminedHold",
+    "JawSearch",
+    "find_fixtures_between_jaws",
+    "is_square",
+    "make_fitness_key",
+]
 
 Array = NDArray[np.float64]
 # The rules in the order in which they are asked.
@@ -637,22 +644,35 @@ def is_square(theta: float) -> bool:
     return abs((degrees(theta) + 45.0) % 90.0 - 45.0) < SQUARE_TILT
 
 
-def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
-    """Return the sort key of an examined hold that is a fixture; better holds have smaller keys.
+def make_fitness_key(hold: JawHold, query: Query) -> list[float]:
+    """Return the part of the sort key of a hold that says how fit it is; fitter holds have smaller keys.
 
     Unfit holds come last, then holds without full contact, then those beyond the vise's rating, then those of
-    which nothing stands above the jaws; the others are in the query's ranking. Of a raw block those come first
-    whose jaws reach least over the finished part's lower side.
+    which nothing stands above the jaws, the deepest between them last. Of a raw block those come first whose
+    jaws reach least over the finished part's lower side.
     """
-    hold = one.hold
-    assert hold is not None
     # A part that ends below the jaws' top can be cut nowhere but from above, and hardly be measured.
     is_sunk = hold.above == 0.0
     key: list[float] = [hold.is_unfit, not hold.full_contact, hold.is_beyond_rating, is_sunk]
-    jaws, raw = query.toolkit.flat_jaws, query.raw
+    jaws, raw, height = query.toolkit.flat_jaws, query.raw, query.part_height
+    if is_sunk and jaws is not None and height is not None:
+        key.append(round(jaws.compute_top(hold.parallels) - height, 6))
+    else:
+        key.append(0.0)
     if raw is not None and jaws is not None:
         # What is left below the part is there to be gripped.
         key.append(round(measure_jaws_over_part(hold, raw, jaws), 6))
+    return key
+
+
+def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
+    """Return the sort key of an examined hold that is a fixture; better holds have smaller keys.
+
+    The fittest come first (:func:`make_fitness_key`); equally fit ones are in the query's ranking.
+    """
+    hold = one.hold
+    assert hold is not None
+    key = make_fitness_key(hold, query)
     for name in query.rank_by:
         match name:
             case "square":

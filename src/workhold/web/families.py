@@ -42,9 +42,15 @@ PAPERS = {
 
 @add_declared_fields(OF_FAMILY, LARGEST)
 class FamilyForm(Form):
-    """Parts that are to be held in one toolkit with few set-ups."""
+    """Parts that are to be held in one toolkit with few set-ups.
+
+    ``thicknesses`` are those of drawn parts in mm, in the order of the parts, for what flat jaws grip.
+    """
 
     workpieces: Annotated[list[WorkpieceForm], Field(min_length=1, max_length=MOST_PARTS)]
+    thicknesses: Annotated[
+        list[Annotated[float, Field(gt=0, le=LARGEST)] | None], Field(max_length=MOST_PARTS)
+    ] = Field(default=[])
     toolkit: HeldIn
     types: list[Name] | None = Field(default=None, max_length=10)
     ranking: list[Name] | None = Field(default=None, max_length=10)
@@ -58,12 +64,16 @@ class FamilyForm(Form):
 
         load_solver()
         toolkit = self.toolkit.to_toolkit()
-        usual = RANKINGS[toolkit.travel_count]
+        usual = None if toolkit.holds_by_friction else RANKINGS[toolkit.travel_count]
         ranking = read_asked_ranking(self.ranking, self.prefer, ()) or usual
         tolerance = None if self.tolerance is None else self.tolerance.to_tolerance()
         parts = [form.to_workpiece(most_segments) for form in self.workpieces]
         asked = collect_given_values(self, OF_FAMILY) | {"rank_by": ranking, "tolerance": tolerance}
-        return tuple((part.name, Query(part, toolkit, self.types, **asked)) for part in parts)
+        high = [*self.thicknesses, *[None] * len(parts)][: len(parts)]
+        return tuple(
+            (part.name, Query(part, toolkit, self.types, thickness=thick, **asked))
+            for part, thick in zip(parts, high, strict=True)
+        )
 
 
 @frozen(eq=False)
@@ -93,7 +103,7 @@ class FoundFamily:
                     "loss": convert_finite(plan.point.loss),
                     "at_least": plan.point.at_least,
                     "is_least": plan.point.is_least,
-                    "pegs_moved": plan.moved,
+                    ("pegs_moved" if family.toolkit.flat_jaws is None else "changes"): plan.moved,
                     "worst": worst.member.name,
                     "figure": convert_finite(worst.figure),
                 }
@@ -136,6 +146,8 @@ def find_family(payload: AskedQueries, order: TaskContext) -> FoundFamily:
             number=one.number[:0],
             turned=one.turned[:0],
             table=one.table.take(slice(0, 0)),
+            holds=(),
+            stop_ranges=(),
         )
         for one in family.members
     }

@@ -84,3 +84,30 @@ def test_one_file_dropped_is_the_part(walk: Walk, files: list[Path]) -> None:
     page.evaluate(DROPPED, [[files[0].name, files[0].read_text()]])
     page.wait_for_selector("#search:not([disabled])")
     assert page.locator("#family").is_hidden()
+
+
+def test_blocks_in_a_plain_vise(walk: Walk, tmp_path: Path) -> None:
+    """Each drawing has a field for its thickness, and changes of parallels and stop are counted."""
+    page = walk.page
+    files = []
+    for name, width in (("low", 90), ("high", 60)):
+        files.append(tmp_path / f"{name}.json")
+        loop = [[0, 0, 0], [width, 0, 0], [width, 40, 0], [0, 40, 0]]
+        files[-1].write_text(json.dumps({"name": name, "units": "mm", "loops": [loop]}))
+    walk.go("settings")
+    page.select_option("#preset", "plain-vise-6-inch")
+    page.click("#families")
+    assert "parallels" in page.inner_text("#family-about")
+    page.set_input_files("#family-files", [str(file) for file in files])
+    page.wait_for_selector("#family-parts li:nth-child(2) input")
+    page.click("#family-search")
+    page.wait_for_selector("#family-trouble", state="visible", timeout=SEARCH_PATIENCE)
+    assert "give its thickness" in page.inner_text("#family-trouble")
+    for place, thickness in ((1, "14"), (2, "45")):
+        page.fill(f"#family-parts li:nth-child({place}) input", thickness)
+        page.press(f"#family-parts li:nth-child({place}) input", "Tab")
+    page.click("#family-search")
+    page.wait_for_selector("#family-answer", state="visible", timeout=SEARCH_PATIENCE)
+    assert page.locator("#family-table th[scope=row]").all_inner_texts() == ["1", "2"]
+    assert "Changes" in page.inner_text("#family-table thead")
+    assert page.evaluate(DECODED) > 0

@@ -5,13 +5,23 @@
 import { ApiError, ask, send, surveyPart } from "./api.js";
 import { byId, field, make, show } from "./dom.js";
 import { outlinesOf } from "./own-outlines.js";
+import { holdsByFriction } from "./questions.js";
 import { state, workpieceForm } from "./state.js";
-import { countText } from "./units.js";
+import { thicknessOf } from "./supports.js";
+import { countText, fieldLength, readLength, unitWord } from "./units.js";
 
 const POLL = 250;
+/** What the dialog is for: with pegs, and in a plain vise. */
+const ABOUT = [
+  "This finds the patterns of pegs that hold many parts in the toolkit chosen under 2, and shows what each fewer set-up costs: the worst location error of a part, divided by the best that the part can have.",
+  "This finds the parallels and places of the work stop that serve many parts in the vise chosen under 2, and shows what each fewer set-up costs: the highest grip that a part can have, divided by its grip.",
+];
 const ENDED = ["done", "failed", "cancelled"];
 
-/** The parts read, and files that are not parts, in the order given. @type {{name: string, part: any, reason: string, file: File}[]} */
+/**
+ * The parts read, and files that are not parts, in the order given; the thickness of a drawn part counts where friction holds it.
+ * @type {{name: string, part: any, reason: string, file: File, thickness: number|null}[]}
+ */
 let entries = [];
 /** The job at the server, or null. @type {string|null} */
 let job = null;
@@ -41,15 +51,17 @@ export function takesDrop(count) {
 export async function openFamily(files) {
   const dialog = /** @type {HTMLDialogElement} */ (byId("family"));
   if (!dialog.open) dialog.showModal();
+  byId("family-about").textContent = ABOUT[holdsByFriction() ? 1 : 0];
   if (!files.length) return writeParts();
   leave();
   const mine = latest;
   for (const file of files) {
     say(`Reading ${file.name} …`);
-    let entry = { name: file.name, part: null, reason: "", file };
+    const thickness = thicknessOf({ ...state, part: null });
+    let entry = { name: file.name, part: null, reason: "", file, thickness };
     try {
       const { part, error: why } = await surveyPart(file);
-      entry = { name: file.name, part, reason: part ? "" : why, file };
+      entry = { name: file.name, part, reason: part ? "" : why, file, thickness };
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       entry.reason = error.message;
@@ -84,9 +96,19 @@ function writeParts() {
     entries = entries.filter((each) => each !== entry);
     writeParts();
   };
+  /** The field for a drawn part's thickness, where what holds it must know that. */
+  const thick = (entry) => {
+    if (!entry.part || entry.part.solid || !holdsByFriction()) return [];
+    const input = /** @type {HTMLInputElement} */ (make("input", { inputmode: "decimal", autocomplete: "off", value: fieldLength(entry.thickness), placeholder: "not known" }));
+    input.addEventListener("change", () => {
+      entry.thickness = readLength(input.value);
+      leave();
+    });
+    return [make("label.thick", {}, `Thickness of ${entry.name} `, make("span.unit", {}, unitWord()), input)];
+  };
   byId("family-parts").replaceChildren(...entries.map((entry) =>
     make(entry.part ? "li.chip" : "li.chip.bad", { title: entry.reason || entry.name },
-      entry.part ? entry.name : `${entry.name}: ${entry.reason}`,
+      ...(thick(entry).length ? thick(entry) : [entry.part ? entry.name : `${entry.name}: ${entry.reason}`]),
       make("button", { type: "button", click: away(entry), "aria-label": `Leave out ${entry.name}` }, "×"))));
   const count = entries.filter((entry) => entry.part).length;
   const button = /** @type {HTMLButtonElement} */ (byId("family-search"));
@@ -106,7 +128,9 @@ async function search() {
     for (const { part, file } of read) await outlinesOf(part, { file, how: {} });
     if (mine !== latest) return;
     const workpieces = read.map(({ name, part }) => workpieceForm(part, name));
-    const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: state.asked.contact_margin ?? 0, tolerance: state.tolerance };
+    const thicknesses = holdsByFriction() ? { thicknesses: read.map(({ part, thickness }) => (part.solid ? null : thickness)) } : {};
+    const margin = holdsByFriction() ? 0 : state.asked.contact_margin ?? 0;
+    const asked = { workpieces, toolkit: state.toolkit, types: state.types, contact_margin: margin, tolerance: state.tolerance, ...thicknesses };
     const begun = await send("families", asked);
     if (mine !== latest) {
       ask(`jobs/${encodeURIComponent(begun.job)}`, { method: "DELETE" }).catch(() => {});
@@ -157,15 +181,15 @@ function writeAnswer(family) {
     return make("tr", {},
       make("th.number", { scope: "row" }, point.at_least === point.setups ? point.setups : `${point.at_least} to ${point.setups}`),
       make("td.number", {}, lossText(point.loss) + (proven ? "" : " or less")),
-      make("td.number", {}, point.pegs_moved), make("td", {}, point.worst),
+      make("td.number", {}, point.pegs_moved ?? point.changes), make("td", {}, point.worst),
       make("td", {}, make("button", { type: "button", click: () => pick(point.setups), "aria-label": `Plan with ${point.setups} set-ups` }, "Plan")));
   });
-  const heads = ["Set-ups", "Worst loss", "Pegs moved", "Worst part", ""];
+  const heads = ["Set-ups", "Worst loss", holdsByFriction() ? "Changes" : "Pegs moved", "Worst part", ""];
   byId("family-table").replaceChildren(...(lines.length ? [
     make("table", {}, make("caption.unseen", {}, "The least worst loss for each number of set-ups"),
       make("thead", {}, make("tr", {}, ...heads.map((words, k) => make(words ? (k < 3 ? "th.number" : "th") : "td", words ? { scope: "col" } : {}, words)))),
       make("tbody", {}, ...lines)),
-  ] : [make("p.trouble-box", {}, "No pattern of pegs holds any of these parts: choose another toolkit under 2.")]));
+  ] : [make("p.trouble-box", {}, `No ${holdsByFriction() ? "set-up" : "pattern of pegs"} holds any of these parts: choose another toolkit under 2.`)]));
   show(byId("family-plan"), lines.length > 0);
   show(byId("family-answer"), true);
   if (lines.length) pick(family.points[0].setups);
