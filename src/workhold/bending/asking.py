@@ -1,10 +1,10 @@
 """How far the fixtures of a result bend their part: one mesh and two factorizations for all of them.
 
 Each unit load is solved once: at the contacts of all fixtures (fixtures share equal contacts), at the
-supports below the part, and at the places where tools and loads press. The movement by a fixture's clamps,
-and how far it gives at each place, are sums of these solutions. All are computed with elements of the second
-order. The worst cases are computed again with the third order: those values are reported, with an error
-derived from the difference.
+supports below the part, and at the places where tools and loads press. The movement under a fixture's clamps
+and the movement at each cutter place are sums of these solutions. All are computed with elements of the
+second order. The worst cases are computed again with the third order. The values of the third order are
+reported, with an error estimated from the difference.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ PRESSED_AT_ONCE = 64
 
 @frozen(eq=False)
 class BendingQuestion:
-    """The question how far fixtures bend a part.
+    """A request to compute how far fixtures bend a part.
 
     Parameters
     ----------
@@ -73,9 +73,9 @@ class BendingQuestion:
     thickness : thickness of the part in mm; None for that of its solid or of the query.
     jaw_force : jaw force in N; None for that of the query, else the one that the query's loads need, else
         1000 N.
-    faces : faces to be cut, whose movement counts: face numbers of the outline, "top" and "bottom"; empty for
-        all.
-    stiffness : stiffness of the closed jaw over that of one contact.
+    faces : faces to be machined: only their movement counts. Face numbers of the outline, "top" and "bottom";
+        empty for all faces.
+    stiffness : ratio of the stiffness of the closed jaw to that of one contact.
     below : by index of a fixture, the pads under its part and the clamp on top; the parts of other fixtures
         lie on their level faces.
     """
@@ -93,7 +93,7 @@ class BendingQuestion:
         Raises
         ------
         InputError
-            Where nobody says it.
+            When neither the question, the solid nor the query gives the height.
         """
         solid = query.workpiece.solid
         if solid is not None:
@@ -104,8 +104,8 @@ class BendingQuestion:
         return height
 
     def find_jaw_force(self, fixture: Fixture, query: Query) -> tuple[float, bool]:
-        """Return (jaw force in N, is_stated); is_stated is True where the force is a mere convention, as none
-        is known.
+        """Return (jaw force in N, whether that force is assumed). It is assumed when neither the question nor
+        the query gives a force and the loads need none.
         """
         given = query.jaw_force if self.jaw_force is None else self.jaw_force
         if given is not None:
@@ -118,13 +118,13 @@ class BendingQuestion:
 
 @define(eq=False)
 class UnitLoads:
-    """Unit loads on a part, and readings of its movement; equal ones are stored once and share a number.
+    """Unit loads on a part and readings of its movement. Equal ones are stored once and share a number.
 
     Parameters
     ----------
     surface : surface of the part's mesh.
-    forces : the loads and readings; the index of one is its number.
-    footings : for each of ``forces``, where it acts on the surface.
+    forces : the loads and readings; the number of one is its index here, from 0.
+    footings : for each of ``forces``, the points of the surface where it acts.
     numbers : number of each load or reading, by its points and forces as bytes.
     places : footings, by points and outward direction as bytes.
     """
@@ -136,7 +136,7 @@ class UnitLoads:
     places: dict[bytes, Footing] = field(factory=dict)
 
     def add(self, forces: Iterable[PointForces]) -> list[int]:
-        """Return the number of each of the given loads or readings; those not known yet are appended."""
+        """Return the number of each given load or reading. New ones are appended."""
         found = []
         for one in forces:
             key = np.round(one.points, 6).tobytes() + np.round(one.forces, 12).tobytes()
@@ -148,7 +148,7 @@ class UnitLoads:
         return found
 
     def find_footing(self, one: PointForces) -> Footing:
-        """Return where a load acts on the surface; loads with the same points share the footing."""
+        """Return the points of the surface where a load acts. Loads with equal points share one footing."""
         outward = b"" if one.outward is None else one.outward.tobytes()
         key = one.points.tobytes() + outward
         if key not in self.places:
@@ -156,7 +156,9 @@ class UnitLoads:
         return self.places[key]
 
     def find_pressed_faces(self, hold: ElasticHold) -> NDArray[np.int64]:
-        """Return the faces of the surface that pegs, tips, pads and jaws press on, without those that lie on a plate."""
+        """Return the indices of the surface's faces that pegs, tips, pads and jaws press on. Faces that lie
+        on a plate are left out.
+        """
         pressed = {point.tobytes() for point in hold.pressed}
         return np.unique(
             np.concatenate(
@@ -167,14 +169,14 @@ class UnitLoads:
 
 @frozen(eq=False)
 class HeldFixture:
-    """A fixture as a load on the part.
+    """A fixture seen as a load on the part.
 
     Parameters
     ----------
     hold : the elastic hold, with its unit loads (columns).
     numbers : for each column of the hold, its number in :class:`UnitLoads`.
     reads : for each level of the hold's locators, the numbers of its readings in :class:`UnitLoads`.
-    force, is_stated : jaw force in N, and whether it is a convention because nobody said it.
+    force, is_stated : jaw force in N, and whether it is assumed because none was given.
     below : the pads under the part and the clamp on top; None without.
     rest : where the part touches the plate that straps press it on; None without straps on a plate.
     """
@@ -188,7 +190,9 @@ class HeldFixture:
     rest: PlateRest | None = None
 
     def estimate_error(self, value: float, change: float) -> float:
-        """Return the error estimate in mm of a movement ``value`` that the third order changes by ``change``."""
+        """Return the error estimate in mm of a movement. ``value`` is the movement with elements of the third
+        order, and ``change`` its change from the second order.
+        """
         return UNSURE * change + (0.0 if self.rest is None else OF_CELLS * value)
 
 
@@ -199,9 +203,9 @@ class PressedPlace:
     Parameters
     ----------
     middle : (3,) centre of the place in mm.
-    cuts : numbers in :class:`UnitLoads` of four unit loads here: forces along x, y and z, and a moment about
-        z.
-    reads : numbers in :class:`UnitLoads` of three readings here: movements along x, y and z.
+    cuts : numbers in :class:`UnitLoads` of the four unit loads at this place: forces along x, y and z, and a
+        moment about z.
+    reads : numbers in :class:`UnitLoads` of the three readings at this place: movements along x, y and z.
     wrenches : (6, 4) force and moment about the origin of each of the four unit loads.
     """
 
@@ -213,7 +217,7 @@ class PressedPlace:
 
 @frozen(eq=False)
 class WorstGive:
-    """The load under which a fixture gives most, computed with elements of the second order.
+    """The load under which the part moves farthest at the cutter, computed with elements of the second order.
 
     Parameters
     ----------
@@ -237,9 +241,9 @@ def find_bendings(
     cancel: Event | None = None,
     progress: Progress | None = None,
 ) -> list[Bending]:
-    """Return how far some fixtures of a result bend their part, in the order of ``rows``.
+    """Return how far given fixtures of a result bend their part, in the order of ``rows``.
 
-    The list is shorter where ``cancel`` is set on the way.
+    The list is shorter if ``cancel`` is set before the end.
 
     Parameters
     ----------
@@ -249,8 +253,8 @@ def find_bendings(
     Raises
     ------
     InputError
-        For a part of which nobody says how thick it is, that has no level face to lie on or cannot be meshed, and faces
-        to be cut that there are not. Also when the extra ``bending`` is not installed.
+        When the part's thickness is not given, the part has no level face to lie on or cannot be meshed, a
+        face to be cut does not exist, or the extra ``bending`` is not installed.
     """
     query, height = result.query, asked.find_part_height(result.query)
     cancel, tell = cancel or Event(), progress or tell_nobody
@@ -319,7 +323,7 @@ def find_bendings(
 
 
 def tell_nobody(fraction: float, count: int) -> None:
-    """Do nothing: the progress callback used where none is given."""
+    """Do nothing. This is the progress callback used when the caller gives none."""
 
 
 def make_bending(
@@ -335,9 +339,9 @@ def make_bending(
     query: Query,
     asked: BendingQuestion,
 ) -> Bending:
-    """Return the bending of one fixture from the solutions with elements of the second and the third order.
+    """Return the bending of one fixture, from its solutions with elements of the second and the third order.
 
-    Values are those of the third order, errors follow from the difference.
+    The reported values are those of the third order. Errors are estimated from the difference.
     """
     surface = third.body.surface
     pressed = find_pressed(surface.nodes, one.hold.pressed)
@@ -379,11 +383,10 @@ def make_bending(
 def find_most_moved(
     one: HeldFixture, moved: Array, pressed: Mask, is_cut: Mask, second: SolvedLoads, third: SolvedLoads
 ) -> BentPlace:
-    """Return the place where clamping moves the faces that count (``is_cut``) most, outside of dents
-    (``pressed``).
+    """Return the place where clamping moves the surface most, outside of dents.
 
-    Places between nodes are searched as well, on faces with a node that moves at least as much as any node
-    that counts.
+    Only nodes in ``is_cut`` count, and not those in ``pressed``. Places between nodes are searched as well,
+    on each face that has a node moved at least as far as the farthest counted node.
 
     Parameters
     ----------
@@ -411,14 +414,14 @@ def find_most_moved(
 def find_largest_stress(
     one: HeldFixture, moved: Array, left_out: Mask, stressed: StressedSurface, second: SolvedLoads
 ) -> LargestStress:
-    """Return the largest von Mises stress on the surface by a fixture's clamps.
+    """Return the largest von Mises stress on the surface under a fixture's clamps.
 
-    Faces that something presses on do not count either, since a face is stressed as a whole.
+    Stress is evaluated face by face, so every face with a pressed node is left out as well.
 
     Parameters
     ----------
-    moved, left_out : (N, 3) movement, with elements of the third order, and (N,) mask of the N surface nodes; those
-        left out do not count.
+    moved, left_out : (N, 3) movement of the N surface nodes in mm, with elements of the third order, and (N,)
+        mask of the nodes that do not count.
     """
     counts = ~left_out[stressed.surface.faces]
     counts[second.units.find_pressed_faces(one.hold)] = False
@@ -433,7 +436,7 @@ def find_largest_stress(
 
 
 def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPlace]:
-    """Return a loaded patch of the surface for each of the chosen places where tools and loads press.
+    """Return a loaded patch of the surface for each chosen place where tools and loads press.
 
     The unit loads and readings of these patches are added to ``units``.
     """
@@ -449,9 +452,10 @@ def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPla
 
 
 def find_pressed(nodes: Array, points: Array, beside: float = BESIDE) -> Mask:
-    """Return the mask (N,) of the nodes (N, 3) nearer than ``beside`` mm to one of the pressed points (K, 3).
+    """Return the mask (N,) of those nodes (N, 3) that are nearer than ``beside`` mm to a pressed point (K,
+    3).
 
-    There the surface is dented.
+    The surface is dented there.
     """
     found = np.zeros(len(nodes), np.bool_)
     for start in range(0, len(points), PRESSED_AT_ONCE):
@@ -470,8 +474,8 @@ class SolvedLoads:
 
     Parameters
     ----------
-    is_summed : whether each sum of unit loads is solved as one load, which is quicker where there are fewer
-        sums than unit loads.
+    is_summed : whether each sum of unit loads is solved as one load. This is faster when there are fewer sums
+        than unit loads.
     """
 
     def __init__(self, body: ElasticBody, units: UnitLoads, is_summed: bool = False) -> None:
@@ -483,7 +487,7 @@ class SolvedLoads:
         self.readings: dict[tuple[int, int], float] = {}
 
     def compute_work(self, number: int) -> Array:
-        """Return the work (S, 3) that a unit load or reading does on each unknown of the surface."""
+        """Return the work (S, 3) that a unit load or reading does per unit of each unknown of the surface."""
         if number not in self.works:
             self.works[number] = self.body.compute_work(
                 self.units.forces[number], self.units.footings[number]
@@ -491,18 +495,16 @@ class SolvedLoads:
         return self.works[number]
 
     def solve(self, number: int) -> Array:
-        """Return the surface's unknowns (S, 3) under the unit load with this number; solved at the first call
-        only.
-        """
+        """Return the surface's unknowns (S, 3) under the unit load with this number. The result is cached."""
         if number not in self.responses:
             self.responses[number] = self.body.respond([self.compute_work(number)])[0]
         return self.responses[number]
 
     def gather(self, numbers: Sequence[int], factors: Array) -> tuple[Sequence[int], Array]:
-        """Return (numbers, factors) by which a sum of unit loads is solved.
+        """Return (numbers, factors) of the loads to solve for a sum of unit loads.
 
-        They are the arguments unchanged or, if ``is_summed``, the number of one load that equals the sum,
-        with factor 1. Numbers of such loads are negative.
+        They are the arguments unchanged. If ``is_summed``, they are the number of a single load that equals
+        the sum, with factor 1. Numbers of such single loads are negative.
         """
         if not self.is_summed:
             return numbers, factors
@@ -541,28 +543,28 @@ class SolvedLoads:
         return self.readings[pair]
 
     def find_motion(self, one: HeldFixture, numbers: Sequence[int], factors: Array, gives: Array) -> Array:
-        """Return the rigid motion (6,) that lays the part against a fixture's locators under a sum of unit
-        loads.
+        """Return the rigid motion (6,) that lays the part, under a sum of unit loads, against a fixture's
+        locators.
 
-        It is three shifts in mm, then three turns in radians.
+        It has three shifts in mm, then three turns in radians.
 
         Parameters
         ----------
-        gives : (R,) how far the R contacts of the first level of locators give way, in mm.
+        gives : (R,) distance in mm by which each contact of the first level of locators gives way.
         """
         numbers, factors = self.gather(numbers, factors)
         return one.hold.find_motion([self.read(level, numbers) @ factors for level in one.reads], gives)
 
     def solve_clamping(self, one: HeldFixture) -> Array:
-        """Return the movement (N, 3) in mm of the surface's nodes by a fixture's clamps, the part laid
-        against its locators.
+        """Return the movement (N, 3) in mm of the surface's nodes under a fixture's clamps, with the part
+        laid against its locators.
         """
         values, motion = self.find_clamped(one)
         return self.body.move_nodes(values) + make_rigid_motions(self.body.surface.nodes) @ motion
 
     def clamp_on(self, one: HeldFixture, faces: NDArray[np.int64], shares: Array) -> Array:
-        """Return the movement (F, K, 3) in mm of points on F faces by a fixture's clamps, laid against its
-        locators.
+        """Return the movement (F, K, 3) in mm of points on F faces under a fixture's clamps, with the part
+        laid against its locators.
 
         The points are at the barycentric coordinates ``shares`` (K, 3), the same on each face.
         """
@@ -574,7 +576,7 @@ class SolvedLoads:
     def find_clamped(self, one: HeldFixture) -> tuple[Array, Array]:
         """Return (unknowns, motion) under a fixture's clamps.
 
-        They are the surface's unknowns (S, 3), and the rigid motion (6,) that lays the part against its
+        These are the surface's unknowns (S, 3) and the rigid motion (6,) that lays the part against its
         locators.
         """
         clamping = one.hold.clamping
@@ -582,8 +584,9 @@ class SolvedLoads:
         return self.add_up(one.numbers, clamping), motion
 
     def lay_on_plate(self, one: HeldFixture) -> HeldFixture:
-        """Return a fixture with the forces by which a plate bears its part under clamping; unchanged where its
-        part lies on no plate that it may lift off.
+        """Return a fixture with the forces by which its plate carries the part under clamping.
+
+        The fixture comes back unchanged unless its part lies on a plate that it may lift off.
         """
         resting = list(one.hold.resting)
         if not resting:
@@ -621,7 +624,7 @@ class SolvedLoads:
     def move_place(self, one: HeldFixture, place: PressedPlace, factors: Array) -> Array:
         """Return the movement (3, V) in mm of a place under V loads on it.
 
-        The forces at contacts that balance the load, and the contacts' giving way, are included.
+        It includes the reactions at the contacts that balance the load, and the compliance of these contacts.
 
         Parameters
         ----------
@@ -637,8 +640,8 @@ class SolvedLoads:
         return np.array(moved).T
 
     def find_worst_give(self, one: HeldFixture, loads: CutterLoads, places: list[PressedPlace]) -> WorstGive:
-        """Return the load under which a fixture gives most; each load counts at the nearest of the chosen
-        places.
+        """Return the load under which the part moves farthest at the cutter. Each load is applied at the
+        nearest of the chosen places.
         """
         factors = [self.find_factors(one, place, np.eye(4)) for place in places]
         matrices = [self.move_place(one, *pair) for pair in zip(places, factors, strict=True)]
@@ -665,10 +668,9 @@ def refuse_unknown_faces(faces: Sequence[int | str], workpiece: Workpiece) -> No
 
 
 def find_cut_nodes(surface: Surface, faces: Sequence[int | str], workpiece: Workpiece, height: float) -> Mask:
-    """Return the mask (N,) of the surface's nodes on the faces to be cut; True for all where no face is
-    named.
+    """Return the mask (N,) of the surface's nodes on the faces to be cut; all True when no face is named.
 
-    Raises InputError where no face of the mesh lies on them.
+    Raises InputError when no face of the mesh lies on the named faces.
     """
     nodes = surface.nodes
     if not faces:

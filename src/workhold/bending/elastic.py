@@ -141,7 +141,7 @@ class ElasticBody:
         return np.array(values, np.float64).reshape(len(faces), -1)
 
     def compute_work(self, forces: PointForces, footing: Footing | None = None) -> Array:
-        """Return the work (S, 3) that forces do on each unknown of the surface.
+        """Return the work (S, 3) that forces do per unit of each unknown of the surface.
 
         Parameters
         ----------
@@ -156,15 +156,17 @@ class ElasticBody:
         return work
 
     def move_nodes(self, values: Array) -> Array:
-        """Return the movement (N, 3) in mm of the surface's nodes, from the values (S, 3) of its unknowns."""
+        """Return the movement (N, 3) in mm of the surface's nodes, computed from the values (S, 3) of the
+        surface's unknowns.
+        """
         faces = self.surface.faces
         moved = np.empty((len(self.surface.nodes), 3))
         moved[faces.ravel()] = self.move_on(values, np.arange(len(faces)), LATTICE).reshape(-1, 3)
         return moved
 
     def move_on(self, values: Array, faces: IntArray, shares: Array) -> Array:
-        """Return the movement (F, K, 3) in mm of points on F faces, from the values (S, 3) of the surface's
-        unknowns.
+        """Return the movement (F, K, 3) in mm of points on F faces, computed from the values (S, 3) of the
+        surface's unknowns.
 
         The points are at the barycentric coordinates ``shares`` (K, 3), the same on each face.
         """
@@ -236,8 +238,8 @@ class ElasticBody:
 
     @cached_property
     def factorized(self) -> tuple[Any, Any, Any]:
-        """(factorized stiffness matrix with springs at six unknowns, vector for a load, vector for an
-        answer).
+        """(factorized stiffness matrix with springs at six unknowns, vector for a load, vector for the
+        solution).
         """
         solving = load_elements().solving
         modulus, ratio = self.material.elastic_modulus, self.material.poisson
@@ -260,10 +262,9 @@ class ElasticBody:
         return solver, matrix.CreateColVector(), matrix.CreateColVector()
 
     def choose_held(self) -> list[tuple[int, int]]:
-        """Return six pairs (number of a corner, axis) to hold by springs, so that no rigid motion is left
-        free.
+        """Return six pairs (number of a corner, axis). Springs at them leave no rigid motion free.
 
-        They are at three corners of the mesh far from each other.
+        They are at three corners of the mesh that are far from each other.
         """
         vertices, at = np.unique(self.surface.vertices.ravel(), return_index=True)
         points = self.surface.corners.reshape(-1, 3)[at]

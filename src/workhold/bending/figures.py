@@ -20,7 +20,7 @@ class Bending(BendingFigures):
     ----------
     surface : surface of the mesh, in the part's coordinates.
     moved : (N, 3) movement of each node of the surface by clamping, in mm.
-    pressed : (N,) whether something presses at the node, so that its dent is not counted.
+    pressed : (N,) whether something presses at the node; its dent does not count.
     """
 
     surface: Surface = field(repr=False)

@@ -1,10 +1,10 @@
-"""Holds of a part as loads on an elastic body: unit loads, their factors under clamping and under a load, and
+"""How a fixture loads an elastic part: unit loads, their factors under clamping and under cutting loads, and
 locators.
 
 Pegs, tips and walls press along their normals on strips; their forces are those of ``statics``, without
-friction. Forces downward and moments that tilt the part are borne from below: by three pads, or by the level
-faces that the part lies on, with a pressure that is affine over them. Flat jaws press with the affine
-pressures of least norm, and the friction forces that balance a load are those of least norm as well.
+friction. Three pads carry the downward forces and tilting moments from below. Without pads, the level faces
+that the part lies on carry them, with a pressure that is affine over these faces. Flat jaws press with the
+affine pressures of least norm, and the friction forces that balance a load are those of least norm as well.
 """
 
 from __future__ import annotations
@@ -53,18 +53,18 @@ class ElasticHold:
     ----------
     columns : C unit loads on the part.
     clamping : (C,) factor of each unit load under clamping, in N.
-    answers : (C, 6) factors of the unit loads that balance a unit force along x, y, z, or a unit moment about
-        the origin.
-    locating : levels of readings that are 0 where the part lies against its locators, the most binding level
-        first.
-    movers : (R, M) how far the contact of each of the R readings of the first level moves with each of M
+    answers : (C, 6) factors of the unit loads that balance a unit force along x, y or z, or a unit moment
+        about such an axis through the origin.
+    locating : levels of readings that are 0 when the part lies against its locators; the level with the
+        highest priority comes first.
+    movers : (R, M) distance that the contact of each first-level reading moves per unit motion of each of M
         carriers.
-    gives : (R, C) how far each of these contacts gives way outward, in mm per N of each unit load.
-    pressed : (K, 3) points that are pressed, around which the surface is dented.
-    size : a length of the part in mm, by which turns are scaled.
-    resting : indices of the unit loads by which a plate presses from below on a part that may lift off it.
-        Their factors under clamping are 0 here, until it is known which of them touch
-        (:mod:`workhold.bending.resting`); their rows of ``answers`` are 0 as well.
+    gives : (R, C) distance that each of these contacts gives way outward, in mm per N of each unit load.
+    pressed : (K, 3) pressed points in mm; the surface around them is dented.
+    size : a length of the part in mm that scales turns to lengths.
+    resting : indices of the unit loads from a plate below that the part may lift off. Their factors under
+        clamping and their rows of ``answers`` are 0 until :mod:`workhold.bending.resting` has found which of
+        them touch.
     """
 
     columns: tuple[PointForces, ...]
@@ -89,13 +89,13 @@ class ElasticHold:
         object.__setattr__(self, "constraints", tuple(rows))
 
     def find_motion(self, readings: Sequence[Array], gives: Array) -> Array:
-        """Return the rigid motion (6,) that lays the part against its locators: shifts in mm, then turns in
-        radians.
+        """Return the rigid motion (6,) that lays the part against its locators: three shifts in mm, then
+        three turns in radians.
 
         Parameters
         ----------
         readings : for each level of ``locating``, the readings (R,) of the movement in mm.
-        gives : (R,) how far the contacts of the first level give way outward, in mm.
+        gives : (R,) distance in mm by which each contact of the first level gives way outward.
         """
         values = [-read for read in readings]
         values[0] = values[0] + gives
@@ -121,13 +121,13 @@ def make_elastic_hold(
 
     Parameters
     ----------
-    foot : the level faces that the part lies on.
-    jaw_force : in N; of each strap where straps hold the part.
+    foot : patch of the level faces that the part lies on.
+    jaw_force : jaw force in N; the force of each strap where straps hold the part.
     height : height of the part in mm.
     pressed_up_to : height in mm up to which pegs press on a prism; None for its height. Not used for a solid.
-    stiffness : stiffness of the closed jaw over that of one contact.
+    stiffness : ratio of the stiffness of the closed jaw to that of one contact.
     below : pads and a clamp on top; if None the part lies on ``foot``.
-    faces : the faces of ``foot``, cut into cells, for a part that straps press on a plate.
+    faces : the faces of ``foot``, cut into cells; needed for a part that straps press on a plate.
     """
     size = max(np.ptp(np.array(workpiece.bounds).reshape(2, 2), axis=0).max(), height)
     if workpiece.solid is None:
@@ -179,14 +179,14 @@ def make_strips(
     height: float,
     pressed_up_to: float | None,
 ) -> list[LoadPatch]:
-    """Return the strip of each peg, tip or wall of a fixture, where it touches the part.
+    """Return for each peg, tip or wall the strip of the part's surface that it touches.
 
-    On a prism a strip reaches from 0 to ``pressed_up_to``; on a solid over the heights of its face, at most to
-    ``height``.
+    On a prism a strip extends from height 0 to ``pressed_up_to``. On a solid it covers the heights of its
+    face, up to ``height``.
 
     Parameters
     ----------
-    points, normals : (P, 2) points where they touch, in mm, and outward unit normals there, in the part's
+    points, normals : (P, 2) contact points in mm and the part's outward unit normals there, in the part's
         coordinates.
     """
     count = len(points)
@@ -206,7 +206,7 @@ def make_strips(
 def find_flexibilities(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, points: Array, pressed_up_to: float | None
 ) -> Array:
-    """Return how far each contact gives way (P,), in mm per N; 0 for tips and walls, and where it is not
+    """Return the compliance (P,) of each contact in mm per N; 0 for tips, for walls, and where it is not
     known.
     """
     carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
@@ -217,10 +217,10 @@ def find_flexibilities(
 
 
 def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow | None) -> ElasticHold:
-    """Return the hold with the supports below the part added, and the factors with which they bear clamping
-    and loads.
+    """Return (hold, factors): the hold with the supports below the part added, and their factors under
+    clamping and loads.
 
-    They are the pads with their clamp on top, or where ``below`` is None the level faces ``foot``.
+    The supports are the pads with their clamp on top. If ``below`` is None they are the level faces ``foot``.
     """
     if below is None:
         return bear_from_below(held, *press_foot(foot))
@@ -237,7 +237,10 @@ def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow 
 
 
 def bear_on_pads(held: ElasticHold, pads: Array, radius: float) -> ElasticHold:
-    """Return the hold with three pads below the part added, (3, 2) centres in mm and their radius in mm."""
+    """Return the hold with three pads added below the part.
+
+    ``pads`` (3, 2) are their centres in mm, ``radius`` is in mm.
+    """
     discs = [make_disc(np.array([x, y, 0.0]), radius, -UP) for x, y in pads]
     more = np.concatenate([held.pressed, *(disc.points for disc in discs)])
     bearing, reads = (disc.press(UP) for disc in discs), (disc.read(-UP) for disc in discs)
@@ -247,10 +250,10 @@ def bear_on_pads(held: ElasticHold, pads: Array, radius: float) -> ElasticHold:
 def bear_from_below(
     held: ElasticHold, bearing: tuple[PointForces, ...], reads: tuple[PointForces, ...]
 ) -> ElasticHold:
-    """Return the hold with three unit loads from below added, and the factors with which they bear clamping and
-    loads.
+    """Return (hold, factors): the hold with three unit loads from below added, and their factors under
+    clamping and loads.
 
-    ``reads`` are the readings that are 0 where the part lies on what bears it.
+    ``reads`` are the readings that are 0 when the part lies on these supports.
     """
     inverse = np.linalg.inv(np.array([one.wrench[BELOW] for one in bearing]).T)
     wrenches = np.array([one.wrench for one in held.columns]).T
@@ -269,7 +272,7 @@ def bear_from_below(
 def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointForces, ...]]:
     """Return (unit loads, readings) of the foot, three each.
 
-    The loads are upward pressures 1, x and y about the centre, which add up to any affine pressure; the
+    The loads are upward pressures 1, x and y about the centre; sums of these are all affine pressures. The
     readings fit a plane to the movement of the foot.
     """
     arms = foot.points - foot.middle
@@ -290,8 +293,8 @@ def make_strapped_hold(
 ) -> ElasticHold:
     """Return the elastic hold of straps, each of which presses straight down with ``strap_force`` N.
 
-    Below, the part lies on three pads, or on a plate that presses on those cells of ``faces`` that touch it.
-    Loads along the plate are borne by friction, at tips and below, each as near to slipping as the others.
+    The part lies on three pads, or on a plate that presses on the touching cells of ``faces``. Friction at
+    the tips and below carries loads along the plate, with the same share of the friction limit everywhere.
 
     Raises
     ------
@@ -348,10 +351,10 @@ def make_strapped_hold(
 
 
 def add_friction(held: ElasticHold, patches: Sequence[LoadPatch], limits: Array) -> ElasticHold:
-    """Return the hold with friction on some level patches added, which bears loads along the plate.
+    """Return the hold with friction added on some level patches, which carries loads along the plate.
 
-    Of all forces that do so, those are taken whose squares over ``limits`` (P,), in N, add up to the least:
-    each patch is then about as near to slipping as the others.
+    Of all friction forces that balance a load, those with the least sum of squares over ``limits`` (P,), in
+    N, are taken. Each patch is then about as near to slipping as the others.
     """
     columns: list[PointForces] = []
     weights: list[float] = []
@@ -378,9 +381,9 @@ def add_friction(held: ElasticHold, patches: Sequence[LoadPatch], limits: Array)
 def make_elastic_jaw_hold(
     fixture: Fixture, hold: JawHold, foot: LoadPatch, jaw_force: float, height: float, size: float
 ) -> ElasticHold:
-    """Return the elastic hold of two flat jaws, which press with affine pressures on what they touch.
+    """Return the elastic hold of two flat jaws, which press with affine pressures on the faces they touch.
 
-    Of all pressures that balance, those of least norm are taken.
+    Of all balanced pressures the ones of least norm are taken.
     """
     pose = fixture.pose.inverse
     columns: list[PointForces] = []
@@ -428,11 +431,11 @@ def make_elastic_jaw_hold(
 def sample_rectangle(
     rectangle: tuple[float, float, float, float], y: float, height: float
 ) -> tuple[Array, Array]:
-    """Return points (M, 3) of a rectangle on a jaw, in the vise's frame, and the area in mm² that each stands
-    for.
+    """Return points (M, 3) of a rectangle on a jaw, in the vise's frame, and the area in mm² that each
+    represents.
 
-    The rectangle is (x0, x1, z0, z1) in mm, cut off at ``height``; one narrower than a peg's strip is widened
-    to it.
+    The rectangle is (x0, x1, z0, z1) in mm, cut off at ``height``. One narrower than a peg's strip is widened
+    to that width.
     """
     x0, x1, z0, z1 = rectangle
     z1 = min(z1, height)

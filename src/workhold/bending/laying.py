@@ -21,8 +21,8 @@ class Constraints:
 
     Parameters
     ----------
-    rows : (R, K) coefficients of the equations. The K unknowns are shifts along x, y and z in mm, turns about
-        these axes times a length in mm, then how far carriers move.
+    rows : (R, K) coefficients of the equations. The K unknowns are shifts along x, y and z in mm, then turns
+        about these axes times a length in mm, then travels of carriers in mm.
     values : (R,) right-hand sides in mm.
     """
 
@@ -34,7 +34,7 @@ def find_rigid_motion(levels: Sequence[Constraints]) -> Array:
     """Return the motion (K,) that fits the levels of constraints in order of priority, by least squares.
 
     The first level is fitted best; among the motions that do so, the second level is fitted best, and so on.
-    What stays free is taken as small as possible.
+    Remaining freedom is used to make the motion as small as possible.
 
     >>> import numpy as np
     >>> wall = Constraints(np.array([[1.0, 0.0], [1.0, 0.0]]), np.array([2.0, 4.0]))

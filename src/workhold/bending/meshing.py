@@ -42,11 +42,11 @@ OF_LEAST_EXTENT = 2.0
 
 @define(eq=False)
 class PartMesh:
-    """A mesh of a part, whose elements follow round faces.
+    """A mesh of a part whose elements follow round faces.
 
     Parameters
     ----------
-    made : mesh object of the library.
+    made : the library's mesh object.
     """
 
     made: Any
@@ -63,7 +63,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
     Raises
     ------
     InputError
-        For a shape that cannot be meshed, and one that takes too many elements.
+        For a shape that cannot be meshed or needs too many elements.
     """
     shape = part.build()
     try:
@@ -89,8 +89,8 @@ def make_mesh(part: PartToBend) -> PartMesh:
 def mesh_shape(shape: Any, size: float) -> Any:
     """Return a library mesh of a shape, with tetrahedra of at most ``size`` mm.
 
-    It has few tetrahedra, or more where the shape cannot be meshed with few. Raises one of the errors of
-    :func:`list_mesher_errors` where it cannot be meshed at all.
+    A coarse mesh is tried first, then finer ones. Raises one of the errors of :func:`list_mesher_errors` if
+    all fail.
     """
     whole = load_elements().shapes.OCCGeometry(shape)
     with silence_output():
@@ -103,15 +103,16 @@ def mesh_shape(shape: Any, size: float) -> Any:
 
 
 def list_mesher_errors() -> tuple[type[Exception], ...]:
-    """Return the classes of errors that the library raises where it cannot mesh a shape."""
+    """Return the exception classes that the library raises when it cannot mesh a shape."""
     return (RuntimeError, load_elements().meshing.NgException)
 
 
 @contextmanager
 def silence_output() -> Iterator[None]:
-    """Throw away what the process writes to its output and its error output meanwhile.
+    """Discard everything that the process writes to standard output and standard error while the context is
+    open.
 
-    Where the mesher fails it writes pages of its own there.
+    A mesher that fails prints pages of messages.
     """
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:

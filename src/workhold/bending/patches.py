@@ -1,8 +1,8 @@
-"""Patches of the surface that are pressed, and readings of the movement beside them.
+"""Pressed patches of the surface, and readings of the movement beside them.
 
-Under a patch the surface is dented: the narrower the patch, the deeper, and no mesh tells how deep. So
-movements are read a little beside the patch, where they do not depend on how the force is distributed over
-it.
+Under a patch the surface is dented: the narrower the patch, the deeper the dent, and no mesh gives its depth.
+So movements are read a little beside the patch. There they do not depend on how the force is spread over the
+patch.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class LoadPatch:
     ----------
     points : (M, 3) points of the patch in mm.
     beside : (K, 3) points beside the patch where movements are read, in mm.
-    outward : unit vector (3,) out of the part; None where the nearest side counts.
-    weights : (M,) fraction of the patch's area that each point stands for; all the same if None.
+    outward : unit vector (3,) out of the part; None to take the nearest side.
+    weights : (M,) fraction of the patch's area that each point represents; None for equal fractions.
     """
 
     points: Array
@@ -64,12 +64,12 @@ class LoadPatch:
 
     @property
     def middle(self) -> Array:
-        """Centre of area (3,) of the points."""
+        """Centroid (3,) of the patch in mm."""
         return self.shares @ self.points
 
     @property
     def shares(self) -> Array:
-        """Fraction (M,) of the patch's area that each point stands for."""
+        """Fraction (M,) of the patch's area that each point represents."""
         return np.full(len(self.points), 1.0 / len(self.points)) if self.weights is None else self.weights
 
     def press(self, direction: Array, factors: Array | None = None) -> PointForces:
@@ -86,7 +86,7 @@ class LoadPatch:
         return PointForces(self.beside, np.tile(direction / count, (count, 1)), self.outward)
 
     def make_unit_moment(self) -> PointForces:
-        """Return forces with a moment of 1 N mm about the vertical axis (z) through the middle."""
+        """Return forces whose moment about the vertical axis (z) through the patch's centroid is 1 N mm."""
         arms = self.points - self.middle
         forces = self.shares[:, None] * np.column_stack([-arms[:, 1], arms[:, 0], np.zeros(len(arms))])
         return PointForces(self.points, forces / self.compute_gyration(), self.outward)
@@ -109,7 +109,7 @@ def make_strip(point: tuple[float, float], normal: tuple[float, float], low: flo
 
     Parameters
     ----------
-    point : where the peg touches, (x, y) in mm.
+    point : contact point (x, y) in mm.
     normal : outward unit normal of the part at that point.
     low, high : heights in mm between which the peg presses.
     """
@@ -129,13 +129,13 @@ def make_strip(point: tuple[float, float], normal: tuple[float, float], low: flo
 
 
 def make_disc(middle: Array, radius: float, outward: Array | None) -> LoadPatch:
-    """Return a level disc, such as that of a pad or a tip, or the place of a cutter on any side of the part.
+    """Return a level disc: the patch of a pad, of a tip, or of a cutter on any side of the part.
 
     Parameters
     ----------
     middle : (3,) centre in mm.
     radius : in mm.
-    outward : unit vector (3,) out of the part; None where the side nearest to the points counts.
+    outward : unit vector (3,) out of the part; None to take the side nearest to the points.
     """
 
     def ring(far: float, count: int) -> Array:
@@ -147,7 +147,7 @@ def make_disc(middle: Array, radius: float, outward: Array | None) -> LoadPatch:
 
 
 def make_rectangle(corner: Array, sides: tuple[Array, Array], spacing: float = ALONG) -> tuple[Array, Array]:
-    """Return points (M, 3) spread evenly over a flat rectangle, and the area in mm² that each stands for.
+    """Return points (M, 3) spread evenly over a flat rectangle, and the area in mm² that each represents.
 
     The rectangle is spanned from ``corner`` (3,) by two vectors ``sides`` (3,); points are at most
     ``spacing`` mm apart, at least two along each side.
@@ -180,8 +180,8 @@ def compute_areas(corners: Array) -> Array:
 
 
 def make_foot(corners: Array) -> LoadPatch | None:
-    """Return the patch of the level faces on which a part lies, of triangles with the corners (T, 3, 3);
-    None without any.
+    """Return the patch of the level faces on which a part lies, given the corners (T, 3, 3) of their
+    triangles; None for no triangles.
     """
     if not len(corners):
         return None
@@ -191,7 +191,7 @@ def make_foot(corners: Array) -> LoadPatch | None:
 
 @frozen(eq=False)
 class RestingFaces:
-    """The level faces on which a part lies, cut into cells that a plate below may touch or not.
+    """The level faces on which a part lies, cut into cells. A plate below touches each cell or does not.
 
     Parameters
     ----------
@@ -204,7 +204,7 @@ class RestingFaces:
 
     @classmethod
     def from_corners(cls, corners: Array) -> RestingFaces:
-        """Return the faces with the corners (T, 3, 3) of their triangles, cut into squares."""
+        """Return the faces cut into squares, given the corners (T, 3, 3) of their triangles in mm."""
         side = float(np.sqrt(compute_areas(corners).sum() / CELLS))
         points, areas = sample_triangles(corners, side / ACROSS_CELL)
         squares = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / side).astype(np.int64)
@@ -213,9 +213,9 @@ class RestingFaces:
     def make_cells_under(
         self, tip: tuple[float, float], radius: float, height: float
     ) -> tuple[LoadPatch, ...]:
-        """Return small cells under a tip, on which most of its force is borne.
+        """Return small cells under a tip, where the plate carries most of the tip's force.
 
-        They are sectors of rings about the tip's axis, as far as the force spreads in the part.
+        They are sectors of rings about the tip's axis, out to where the force spreads in the part.
 
         Parameters
         ----------
@@ -239,9 +239,9 @@ class RestingFaces:
 
 
 def split_cells(points: Array, areas: Array, keys: NDArray[np.int64]) -> tuple[LoadPatch, ...]:
-    """Return a patch for each distinct row of ``keys`` (M, 2), of those of the points (M, 3) that have it.
+    """Return a patch for each distinct row of ``keys`` (M, 2), made of the points (M, 3) with that key.
 
-    ``areas`` (M,) is what each point stands for, in mm².
+    ``areas`` (M,) is the area in mm² that each point represents.
     """
     _, own = np.unique(keys, axis=0, return_inverse=True)
     own = own.ravel()
@@ -254,10 +254,10 @@ def split_cells(points: Array, areas: Array, keys: NDArray[np.int64]) -> tuple[L
 
 
 def sample_triangles(corners: Array, spacing: float) -> tuple[Array, Array]:
-    """Return points (M, 3) spread over triangles with the corners (T, 3, 3), and the area in mm² that each
-    stands for.
+    """Return points (M, 3) spread over triangles, and the area in mm² that each represents.
 
-    Each triangle is cut into alike ones with sides of at most ``spacing`` mm, whose middles these are.
+    ``corners`` (T, 3, 3) are in mm. Each triangle is cut into similar triangles with sides of at most
+    ``spacing`` mm; the points are their centroids.
     """
     points, areas = [], []
     for corner, area in zip(corners, compute_areas(corners).tolist(), strict=True):

@@ -1,4 +1,6 @@
-"""Places where tools and loads press on a part, and their forces, to compute how far the part gives there."""
+"""Places where tools and loads press on a part, and their forces; used to compute how far the part moves
+there.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,7 @@ class CutterLoads:
     middle, half : (N,) directions of the force in the plane: from middle - half to middle + half, in radians.
     row : (N,) index of the program's move; for a load, minus its number from 1.
     chosen : (P,) indices of places far from each other, at which the part is loaded.
-    owner : (N,) for each place the nearest of the chosen ones, as an index into ``chosen``.
+    owner : (N,) index into ``chosen`` of the chosen place nearest to each place.
     """
 
     points: Array
@@ -57,8 +59,8 @@ class CutterLoads:
         return len(self.row)
 
     def list_vectors(self, number: int) -> Array:
-        """Return all combinations (V, 4) that may press at place ``number``: forces along x, y and z in N,
-        and moment about z in N mm.
+        """Return the extreme loads (V, 4) at place ``number``: forces along x, y and z in N, and the moment
+        about z in N mm.
         """
         span = np.linspace(-1.0, 1.0, DIRECTIONS) if self.half[number] > 0.0 else np.zeros(1)
         angles = self.middle[number] + self.half[number] * span
@@ -74,8 +76,8 @@ class CutterLoads:
         )
 
     def choose_places(self) -> tuple[IntArray, IntArray]:
-        """Return (chosen, owner), see the class: places far from each other, and for each place the nearest
-        of these.
+        """Return (chosen, owner) as described at the class: places far from each other, and for each place
+        the nearest of these.
         """
         chosen = [int(np.hypot(self.force, np.abs(self.axial).max(axis=1)).argmax())]
         nearest = np.linalg.norm(self.points - self.points[chosen[0]], axis=1)
@@ -90,8 +92,7 @@ class CutterLoads:
 
 
 def list_cutter_loads(query: Query, height: float) -> CutterLoads | None:
-    """Return what the tools of a query's program and its loads exert on the part; None where there are
-    neither.
+    """Return the forces that the query's program and its loads exert on the part; None when it has neither.
 
     ``height`` is the part's height in mm.
     """
@@ -136,8 +137,8 @@ def list_program_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
 
 
 def list_load_rows(query: Query, height: float) -> list[tuple[Any, ...]]:
-    """Return a row as :func:`list_program_rows` does for each point of each load; the last field is minus the
-    load's number from 1.
+    """Return a row as :func:`list_program_rows` does for each point of each load. The last field is minus the
+    load's number, counted from 1.
     """
     rows: list[tuple[Any, ...]] = []
     for number, load in enumerate(query.loads):

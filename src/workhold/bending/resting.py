@@ -6,10 +6,11 @@ rise by all other forces and W the wrench (F_z, M_x, M_y) of a unit force on eac
 
     s = C p + u + W m,   W' p = -w,   p >= 0,   s >= 0,   p's = 0,
 
-where w is the wrench of the other forces and m the rigid motion of the part (rise, and two turns). These are the
-conditions of a convex quadratic program (N. Kikuchi, J. T. Oden, *Contact Problems in Elasticity*, 1988). It is
-solved by guessing which cells touch, and mending the guess: cells that pull let go, cells that sink touch.
-Loads on the part then change the forces of the cells that touch, and which these are stays as it is.
+where w is the wrench of the other forces and m the rigid motion of the part (rise, and two turns). These are
+the conditions of a convex quadratic program (N. Kikuchi, J. T. Oden, *Contact Problems in Elasticity*, 1988).
+It is solved iteratively from a guess of the touching cells: cells under tension are removed, cells that sink
+into the plate are added. Further loads on the part change the forces of the touching cells; the set of
+touching cells stays fixed.
 """
 
 from __future__ import annotations
@@ -29,13 +30,13 @@ MOST_GUESSES, NOTHING = 400, 1e-9
 
 @frozen(eq=False)
 class PlateRest:
-    """Cells of a part that touch the plate, and how they bear loads.
+    """Cells of a part that touch the plate, with their forces and compliance.
 
     Parameters
     ----------
     touching : (T,) indices of the cells that touch.
     pressures : (N,) force in N on each cell; 0 where it does not touch.
-    compliance : (T, T) rise in mm of each touching cell by a unit force on each.
+    compliance : (T, T) rise in mm of each touching cell (row) per N on each touching cell (column).
     wrenches : (T, 3) wrench (F_z, M_x, M_y) of a unit force on each, in N and N mm.
     """
 
@@ -45,18 +46,18 @@ class PlateRest:
     wrenches: Array
 
     def bear(self, rise: Array, load: Array) -> Array:
-        """Return the forces (T, V) in N by which the touching cells bear V further loads, and stay where they are.
+        """Return the forces (T, V) in N by which the touching cells balance V further loads without moving.
 
         Parameters
         ----------
-        rise : (T, V) rise in mm of each touching cell by the loads alone.
+        rise : (T, V) rise in mm of each touching cell under the loads alone.
         load : (3, V) wrench (F_z, M_x, M_y) of the loads.
         """
         return balance(self.compliance, self.wrenches, rise, load)[0]
 
 
 def balance(compliance: Array, wrenches: Array, rise: Array, load: Array) -> tuple[Array, Array]:
-    """Return (forces (T, V), motions (3, V)) with which T cells rise by nothing and balance V loads.
+    """Return (forces (T, V), motions (3, V)) under which the T cells do not rise and V loads are balanced.
 
     The parameters are as in :class:`PlateRest` and :meth:`PlateRest.bear`.
     """
@@ -71,23 +72,24 @@ def balance(compliance: Array, wrenches: Array, rise: Array, load: Array) -> tup
 
 
 def find_rest(compliance: Array, wrenches: Array, rise: Array, load: Array) -> PlateRest:
-    """Return which of N cells touch the plate, and how hard it presses on them.
+    """Return the cells that touch the plate and the force of the plate on each of N cells.
 
     Parameters
     ----------
-    compliance : (N, N) rise in mm of each cell by a unit force on each.
+    compliance : (N, N) rise in mm of each cell (row) per N on each cell (column).
     wrenches : (N, 3) wrench (F_z, M_x, M_y) of a unit force on each, in N and N mm.
-    rise : (N,) rise in mm of each cell by all other forces.
-    load : (3,) wrench (F_z, M_x, M_y) of these.
+    rise : (N,) rise in mm of each cell under all other forces.
+    load : (3,) wrench (F_z, M_x, M_y) of all other forces.
 
     Raises
     ------
     InputError
-        Where no pressure from below balances the load, so that the part tips.
+        When no pressure from below balances the load: the part tips.
 
     Examples
     --------
-    Three cells in a row, pressed down in the middle of a stiff part: all bear alike.
+    Three cells in a row, under a stiff part that is pressed down in the middle: all three carry the same
+    force.
 
     >>> import numpy as np
     >>> stiff, row = 1e-9 * np.eye(3), np.array([[1.0, 0.0, 10.0], [1.0, 0.0, 0.0], [1.0, 0.0, -10.0]])

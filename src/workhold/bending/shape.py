@@ -64,7 +64,7 @@ class KeptShape:
 
     Parameters
     ----------
-    text : content of the shape's file.
+    text : text of the shape's file in Open CASCADE's format.
     """
 
     text: str

@@ -1,11 +1,11 @@
 """The largest stress on the surface of a bent part, from how its surface moves.
 
-Nothing but contacts presses on the surface, so that its stress is plane there: it follows from how the surface is
-stretched along itself (S. P. Timoshenko, J. N. Goodier, *Theory of Elasticity*, chapter 2). Of what bends a wall the
-stress is largest on its surface. Compared with yielding is von Mises' stress.
+Only contacts press on the surface, so elsewhere its stress is plane: it follows from the strain of the
+surface along itself (S. P. Timoshenko, J. N. Goodier, *Theory of Elasticity*, chapter 2). In a wall that
+bends, stress is largest on the surface. Von Mises stress is compared with the strength.
 
-Stress is not looked at under contacts and beside them, nor beside sharp inner edges, where it is as large as the mesh
-is fine: cutters leave a radius there.
+Stress is not evaluated under and beside contacts, nor beside sharp inner edges. There it grows without limit
+as the mesh gets finer; real cutters leave a radius.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ class FaceDerivatives:
 
     Parameters
     ----------
-    first, second : derivative by the first and by the second barycentric coordinate, the third one following.
+    first, second : derivative by the first and by the second barycentric coordinate; the third one changes so
+        that the sum stays 1.
     """
 
     first: Array
@@ -68,7 +69,7 @@ def differentiate(values: Array) -> tuple[Array, Array]:
 
 @define(eq=False)
 class StressedSurface:
-    """The surface of a mesh, to find the stress on it.
+    """The surface of a mesh, prepared for the computation of stress on it.
 
     Parameters
     ----------
@@ -91,7 +92,9 @@ class StressedSurface:
 
     @cached_property
     def normals(self) -> Array:
-        """Outward unit normals (F, 15, 3) at the nodes of each face; those of its middle where it has none."""
+        """Outward unit normals (F, 15, 3) at the nodes of each face; the face's central normal at degenerate
+        nodes.
+        """
         across = np.cross(*self.along)
         middle = across.mean(axis=1, keepdims=True)
         size = np.linalg.norm(across, axis=2, keepdims=True)
@@ -101,16 +104,19 @@ class StressedSurface:
 
     @cached_property
     def weights(self) -> Array:
-        """Area (F, 15) that a face has at each node, over the mean of its nodes; 0 at nodes where two sides of it run on
-        along one curve, and stretching is not known.
+        """Area (F, 15) of a face at each node, relative to the mean over its nodes; 0 at degenerate nodes.
+
+        A node is degenerate where two sides of the face continue along one curve. Strain is not known there.
         """
         size = np.linalg.norm(np.cross(*self.along), axis=2)
         return np.where(size > LEAST_AREA * size.mean(axis=1, keepdims=True), size, 0.0)
 
     @cached_property
     def pairs(self) -> tuple[IntArray, IntArray]:
-        """Pairs (P,), (P,) of entries, which are a node of a face each, face times 15 plus node: those of one node
-        between whose faces there is no sharp edge. Each is in a pair with itself.
+        """Pairs (P,), (P,) of entries, each numbered face times 15 plus node, that share a smooth node.
+
+        Both entries of a pair are the same node of the mesh, and no sharp edge separates their faces. Each
+        entry is also paired with itself.
         """
         node = self.surface.faces.ravel()
         order = np.argsort(node, kind="stable")

@@ -1,5 +1,6 @@
-"""The surface of a mesh: nodes and triangles fine enough to find the largest movement, and the places of
-points on it."""
+"""The surface of a mesh: nodes, triangles fine enough to find the largest movement, and projection of points
+onto it.
+"""
 
 from __future__ import annotations
 
@@ -91,7 +92,7 @@ class Surface:
         Raises
         ------
         InputError
-            Where the part has no face that looks that way.
+            When no face of the part points that way.
         """
         corners = self.corners
         facing = self.normals.reshape(len(corners), 4, 3).mean(axis=1)
@@ -131,9 +132,7 @@ class Surface:
 
 
 def number_of(first: int, second: int) -> int:
-    """Return the index in ``LATTICE`` of the node with these quarters of the first and the second barycentric
-    coordinate.
-    """
+    """Return the index in ``LATTICE`` of the node with these barycentric coordinates, both in quarters."""
     return int(np.flatnonzero((QUARTERS[:, 0] == first) & (QUARTERS[:, 1] == second))[0])
 
 
@@ -175,8 +174,8 @@ def name_nodes(vertices: IntArray, count: int) -> IntArray:
     """Return integers (F, 15) that identify the nodes of F faces with vertices (F, 3): shared nodes have
     equal ones.
 
-    At a corner or on an edge, the integer follows from the numbers of its corners and the quarters between
-    them; the integers of nodes inside a face are negative.
+    At a corner or on an edge, the integer is computed from the numbers of the edge's corners and the node's
+    position in quarters of the edge. Integers of nodes inside a face are negative.
 
     Parameters
     ----------

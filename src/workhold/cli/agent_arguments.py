@@ -82,17 +82,17 @@ class Polygon(ToolArguments):
 
 @add_declared_fields(list_declarations(CuttingQuestion))
 class CuttingArguments(ToolArguments):
-    """How the tools cut of which the table does not say it; one of force, power and material."""
+    """How tools cut that the table does not describe; give one of force, power and material."""
 
 
 @add_declared_fields(list_declarations(StockQuestion))
 class StockArguments(ToolArguments):
-    """What the part is cut from, on which alone tools press."""
+    """The stock that the part is cut from. Tools press only where they meet it."""
 
 
 @add_declared_fields(list_declarations(ProgramQuestion))
 class ProgramArguments(ToolArguments):
-    """The program of the mill, whose tools the fixtures are to keep clear of."""
+    """The program of the mill. The fixtures keep clear of its tools."""
 
     path: str = Field(description="path of the program (G-code)")
     tools: str | None = Field(

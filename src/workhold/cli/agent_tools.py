@@ -143,7 +143,7 @@ def explain(asked: DesignArguments, folder: Path, cancel: Event) -> ToolAnswer:
 
 
 def search_until_deadline(asked: DesignArguments, cancel: Event) -> tuple[LoadedPart, Result]:
-    """Return the part and the result of a search that stops when the seconds asked for are over or ``cancel``
+    """Return the part and the result of a search, which stops after the seconds asked for or when ``cancel``
     is set.
     """
     from workhold.search.design import answer

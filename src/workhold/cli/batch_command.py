@@ -79,7 +79,7 @@ TRIED = make_option(
 
 @frozen
 class BatchOutputOptions:
-    """The options of what is kept of a batch, as typed."""
+    """The options that choose what a batch keeps, as typed."""
 
     out: str = make_option(
         OUTPUT,
@@ -97,7 +97,7 @@ class BatchOutputOptions:
 
 @frozen
 class WorkerOptions:
-    """The options of where the work is done, as typed."""
+    """The options that choose where the work is done, as typed."""
 
     workers: str | None = make_option(WORK, "N", "Worker processes; one for each processor if not given.")
     seconds: str = make_option(
@@ -184,7 +184,7 @@ class WorkerSetting:
 
 @frozen
 class BatchTask:
-    """A batch to be run: requests for many parts, and where results go.
+    """A batch to run: requests for many parts, and the place of the results.
 
     Parameters
     ----------
@@ -209,7 +209,7 @@ class BatchAnswer:
     store, measured : records of the jobs, and the seconds that each job took.
     spent : seconds that the whole batch took.
     events : sentences on what happened to workers, for the report.
-    gone : sentence on how all workers were lost; empty where they were not.
+    gone : sentence that says how all workers were lost; empty if they were not.
     """
 
     done: BatchState
@@ -242,7 +242,7 @@ def batch(
 ) -> None:
     """Try many parts in many toolkits: every part with every toolkit, into tables, a report and result files.
 
-    Every answer is kept as soon as it is found. Whatever ended the run, the same command goes on where it
+    Every answer is kept as soon as it is found. After an interruption, the same command continues where it
     stopped. A part that cannot be read becomes a row with the reason.
 
     Example: workhold batch parts/ --toolkit plate-20mm,clamp-plate-20mm --out results
@@ -356,8 +356,8 @@ def write_all(asked: BatchTask, answer: BatchAnswer) -> Report:
 
 
 def is_seated(held: ToolkitQuery) -> bool:
-    """Return whether a query asks for seating that needs compiled kernels: for a vise or one clamp, but not
-    for two clamps.
+    """Whether a query asks for seating that needs compiled kernels: with a vise or one clamp, but not with
+    two clamps.
     """
     from workhold.model.query import Query
 

@@ -126,11 +126,12 @@ def bend(
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
-    """Report how far clamps bend the part of fixture N, or of the best fixtures, and how far it gives at the cutter.
+    """Report how far clamps bend the part of fixture N, or of the best fixtures, and how far the part moves
+    at the cutter.
 
-    What clamps bend springs back after the cut: a face that was cut flat is no longer flat. Loads and program are
-    those of the result. A part that was read from a STEP file needs this file again, with --part. This takes the
-    extra "bending", which is NGSolve.
+    The bending by clamps springs back after the cut: a face that was cut flat is no longer flat. Loads and
+    program are those of the result. A part that was read from a STEP file needs this file again, with --part.
+    The command needs the extra "bending", which is NGSolve.
 
     Example: workhold bend part.json --material aluminium-6061 --thickness 12 --jaw-force 3000 --bend 0.02
     """
@@ -236,8 +237,8 @@ def read_rows(
 ) -> tuple[Result, list[int]]:
     """Return the result in a file, and the indices, from 0, of the fixtures to bend.
 
-    The fixture is that of ``rank`` where given, else the first ``best`` fixtures, or 20 for None; seats for which
-    no straps were found are left out. ``is_whole`` says that all of the file is read, to be written again.
+    It is the fixture of ``rank`` if given, else the first ``best`` fixtures (20 for None). Seats for which no
+    straps were found are left out. ``is_whole`` says that all of the file is read, to be written again.
     """
     if rank is not None and not is_whole:
         return read_result_with_rank(result_file, rank), [rank - 1]
@@ -294,7 +295,9 @@ def write_first(
 
 
 def describe_strength(asked: BendingQuestion, unit: Unit) -> str:
-    """Return a sentence on the stress that the material bears, with a space before it; "" where it is not known."""
+    """Return a sentence on the strength of the part's material, with a space before it; "" if the strength is
+    not known.
+    """
     strength = asked.material.strength
     if strength is None:
         return ""

@@ -1,4 +1,4 @@
-"""The commands that list what there is: ``parts``, ``toolkits`` and ``features``.
+"""The commands that list parts, toolkits and faces: ``parts``, ``toolkits`` and ``features``.
 
 They list the built-in parts, the toolkits that come with workhold or all figures of one, and the numbered
 faces of a part.
@@ -237,7 +237,7 @@ def format_limits(limits: Limits, unit: Unit) -> str:
 
 @frozen
 class FeatureOptions:
-    """The options of what is listed of a part, as typed."""
+    """The options that choose what is listed of a part, as typed."""
 
     draw: str | None = make_option(None, "FILE", "Draw them into this file, whose name ends in .svg or .png.")
     force: bool = FORCE
@@ -260,7 +260,7 @@ class FeatureOptions:
 
 @frozen
 class FeaturesTask:
-    """A part of which something is listed.
+    """A part whose faces, layers, solids or parts are to be listed.
 
     Parameters
     ----------

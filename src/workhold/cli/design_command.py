@@ -105,7 +105,7 @@ class SearchOptions:
 
 @frozen
 class OutputOptions:
-    """The options of where the answer goes, as typed."""
+    """The options that choose where the answer goes, as typed."""
 
     out: str | None = make_option(OUTPUT, "FILE", "Write all fixtures to this file; - is the terminal.")
     format_: str | None = FORMAT
@@ -168,7 +168,7 @@ class OutputTarget:
     out, form : path of the result file and its form; None for no file.
     folder : folder for pictures; None for no pictures.
     listed : number of fixtures that the terminal lists, and whether unfit ones are among them.
-    sheet, before : path of the setup sheet of the first choice, and of the result of the side before, which
+    sheet, before : path of the setup sheet of the first choice, and of the result of the previous side, which
         the sheet names.
     as_json : whether one JSON object is printed instead of tables.
     """
@@ -199,7 +199,7 @@ STRAPPED = "strap-plate-20mm"
 
 @frozen
 class DesignTask:
-    """A search and how it is to be answered.
+    """A search, and the form of its answer.
 
     Parameters
     ----------
@@ -444,8 +444,8 @@ def search_and_stream(
 ) -> Result:
     """Return the result of a search by ``engine``, "curves" or "algebra".
 
-    If ``streamed`` is a path, the result file is written there during the search. ``watching`` are keyword
-    arguments of the search, such as progress and cancel.
+    If ``streamed`` is a path, the result file is written there during the search. ``watching`` are further
+    keyword arguments of the search, such as progress and cancel.
     """
     if engine == "algebra":
         from workhold.algebra.engine import find_fixtures_by_algebra

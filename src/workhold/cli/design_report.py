@@ -102,7 +102,7 @@ MOST_HELPS = 6
 def explain_none(
     result: Result, threads: int | None, folder: Path | None, unit: Unit, stream: TextIO
 ) -> None:
-    """Print what each rule takes away, the nearest miss, and changes that would help.
+    """Print how many candidates each rule removes, the nearest miss, and changes that would help.
 
     The nearest miss is drawn into ``folder`` as SVG and PNG, unless the folder is None.
     """
@@ -118,7 +118,9 @@ def explain_none(
 def print_explanation(
     explanation: Explanation, toolkit: Toolkit, unit: Unit, stream: TextIO, said: Sequence[Note] = ()
 ) -> None:
-    """Print an explanation of why there is no fixture, without what the notes in ``said`` have said already."""
+    """Print an explanation of why there is no fixture, without sentences that the notes in ``said`` already
+    contain.
+    """
     from workhold.cli.tables import tabulate_fixture_setup
 
     print_tables("", stream=stream)

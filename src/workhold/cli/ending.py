@@ -2,7 +2,7 @@
 
 Python acts on a signal between two of its own steps, and then waits for its threads: a long step in compiled
 code would delay the end. So a separate thread receives the signal at once. It gives the program a moment to
-end in order, and then ends it, without unfinished files. A second signal ends it at once.
+end in order. Then it removes unfinished files and ends the process. A second signal ends it at once.
 """
 
 from __future__ import annotations
@@ -38,18 +38,19 @@ PLAIN_LINE = b"\r\x1b[2K\x1b[?25h"
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C, as an exception of its own.
+    """The exception that Ctrl-C raises.
 
-    A plain KeyboardInterrupt that passes code made from text ends Python by the signal, whatever catches it.
+    A plain KeyboardInterrupt will not do: if it passes through code run by ``exec``, Python ends by the
+    signal even if the exception is caught.
     """
 
 
 class Terminated(SystemExit):
-    """SIGTERM, as an exception."""
+    """The exception that SIGTERM raises."""
 
 
 class SignalState:
-    """The signals that this process has received, and whether it has findings to keep."""
+    """The signals that this process has received, and whether it has results to keep."""
 
     def __init__(self) -> None:
         self.watched = False
@@ -73,9 +74,7 @@ class SignalState:
             end_now(number)
 
     def end_impatiently(self, number: int) -> None:
-        """End a process that has not ended by itself,
-        unless it is keeping what it has found after a Ctrl-C.
-        """
+        """End a process that has not ended by itself, unless it is storing its results after a Ctrl-C."""
         if not (number == signal.SIGINT and self.keeping):
             end_now(number)
 
@@ -124,7 +123,7 @@ def terminate(number: int, frame: FrameType | None) -> None:
 
 
 def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
-    """End the process at once where the exception of a signal was lost, as in a callback of a compiled
+    """End the process at once when the exception of a signal was swallowed, as in a callback of a compiled
     library.
 
     Installed as ``sys.unraisablehook``.
@@ -178,7 +177,7 @@ def say_interrupted() -> None:
 
 
 def keep_what_is_found() -> None:
-    """Set the mark that there are findings to keep; an interrupted search then has time to return them."""
+    """Note that there are results to keep. An interrupted search then has time to return them."""
     ending.keeping = True
 
 
@@ -187,7 +186,7 @@ def ask_to_stop(then: str) -> Iterator[threading.Event]:
     """Yield an event that Ctrl-C sets within the block; ``then`` is printed on stderr to say what happens
     next.
 
-    The program ends on a second Ctrl-C, or shortly after the first where there are no findings (see
+    The program ends on a second Ctrl-C, or shortly after the first if there are no results to keep (see
     :func:`keep_what_is_found`).
     """
     event = threading.Event()

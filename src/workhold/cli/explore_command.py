@@ -50,7 +50,7 @@ VISES = make_option(
 
 @frozen
 class TableOptions:
-    """The options of where the table goes, as typed."""
+    """The options that choose where the table goes, as typed."""
 
     out: str | None = make_option(None, "FILE", "Write the table to this file, as comma-separated values.")
     force: bool = FORCE
@@ -154,9 +154,7 @@ def read_for(
 
 
 def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[LoadedPart]) -> None:
-    """Raise InputError for numbers of faces that, in any reading of the part, do not exist or are not
-    certain.
-    """
+    """Raise InputError for a face number that does not exist, or is not certain, in any reading of the part."""
     from workhold.contact.features import find_face_of_segment
     from workhold.files.part.load import refuse_unsure_numbers
 

@@ -1,6 +1,7 @@
-"""The command ``workhold family``: the fewest set-ups for many parts, and what each fewer one costs.
+"""The command ``workhold family``: the fewest set-ups for many parts, and the loss in quality for each number
+of set-ups.
 
-The terminal shows the curve, what was left out, and the plan.
+The terminal shows the curve, the excluded parts, and the plan.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ PartsArgument = Annotated[
 
 @frozen
 class FamilyOptions:
-    """The options of the set-ups that are sought, as typed."""
+    """The options that describe the wanted set-ups, as typed."""
 
     max_loss: str | None = make_option(
         FAMILY,
@@ -132,7 +133,7 @@ class FamilyOptions:
 
 @frozen
 class FamilyOutputOptions:
-    """The options of where curve and plans go, as typed."""
+    """The options that choose where curve and plans go, as typed."""
 
     out: str | None = make_option(OUTPUT, "FILE", "Write curve and plans to this JSON file.")
     draw: str | None = make_option(
@@ -168,7 +169,7 @@ class FamilyOutputOptions:
 
 @frozen
 class FamilyTask:
-    """A family of parts, and how it is to be answered.
+    """A family of parts, and the form of the answer.
 
     Parameters
     ----------
@@ -206,13 +207,12 @@ def family(
     written: FamilyOutputOptions,
     reading: PartOptions,
 ) -> None:
-    """Report which set-ups hold many of PARTS, and what each fewer set-up costs in quality.
+    """Report which peg patterns hold many of PARTS, and how much quality is lost with fewer set-ups.
 
-    The loss of a fixture is its location error, or the first figure of --rank-by, divided by the best that the
-    part has in this toolkit: 1 is the best, 2 is twice as bad. For each number of set-ups the report gives the
-    smallest loss within which all parts can be held. Give --setups or --max-loss to see where the pegs stand
-    and how each part lies. In a plain vise a set-up is a pair of parallels with the work stop, and the loss is of
-    the jaw force needed, or of the grip where no loads are given.
+    The loss of a fixture is its location error, or the first figure of --rank-by, divided by the best that
+    the part has in this toolkit: 1 is the best, 2 is twice as bad. For each number of set-ups the report
+    gives the smallest loss within which all parts can be held. Give --setups or --max-loss to see the holes
+    of the pegs and the position of each part.
 
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """
@@ -315,7 +315,7 @@ def write_files(asked: FamilyTask, answer: FamilyAnswer) -> list[str]:
 
 
 def print_family(answer: FamilyAnswer, unit: Unit) -> None:
-    """Print what was left out, the curve and the plan, each where there is one."""
+    """Print the excluded parts, the curve and the plan, each if there is one."""
     found, plan, spent = answer.found, answer.plan, answer.spent
     toolkit = found.toolkit
     for part in found.left_out:
@@ -344,7 +344,7 @@ def print_family(answer: FamilyAnswer, unit: Unit) -> None:
 
 
 def print_plan(plan: FamilyPlan, found: Family, unit: Unit) -> None:
-    """Print for each set-up the holes of its pegs, or parallels and work stop, and how each part lies in it."""
+    """Print for each set-up the holes of its pegs, and the position of each part in it."""
     from workhold.family.jaw_setups import describe_changes, describe_jaw_setup
 
     before: SetUp | None = None

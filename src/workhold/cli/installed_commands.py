@@ -1,9 +1,9 @@
-"""The commands ``doctor`` and ``schema``: what is installed and missing, and what shape the files have.
+"""The commands ``doctor`` and ``schema``: what is installed or missing, and the JSON Schemas of the files.
 
-``doctor`` imports only the library for STEP files, which may be installed and still lack a library of the
-system. What the extras require is read from the installed package, so that nothing is listed twice.
+``doctor`` imports only the library for STEP files, because that may be installed and still lack a system
+library. The requirements of the extras are read from the installed package.
 
-For ``schema`` JSON Schemas are generated from the forms that check what goes in and out.
+``schema`` generates JSON Schemas from the forms that check input and output.
 """
 
 from __future__ import annotations
@@ -119,9 +119,9 @@ def find_kernels() -> InstallationRow:
 
 
 def find_extras(is_built: bool) -> Iterator[InstallationRow]:
-    """Yield a row for each extra, in the order of :data:`USES`, on what of it is installed.
+    """Yield a row for each extra, in the order of :data:`USES`, with its state of installation.
 
-    ``is_built`` says that the package has compiled kernels for this machine, so that numba is not needed.
+    ``is_built`` tells that the package has compiled kernels for this machine, so that numba is not needed.
     """
     asked = list_requirements()
     for extra, use in USES.items():
@@ -161,8 +161,10 @@ def list_requirements() -> dict[str, list[tuple[str, str]]]:
 
 
 def describe_distribution(name: str, least: str) -> tuple[str, bool]:
-    """Return (words, usable): a distribution's version, or that it is missing or older than ``least``; and
-    whether it can be used.
+    """Return (words, usable) for a distribution.
+
+    The words give its version, or say that it is missing or older than ``least``. ``usable`` is False in the
+    latter cases.
     """
     if find_spec(MODULES.get(name, name)) is None:
         return f"{name} missing", False
@@ -225,8 +227,7 @@ SCHEMAS = {
 def make_schema(name: str) -> dict[str, Any]:
     """Return the JSON Schema with a name of :data:`SCHEMAS`.
 
-    Where a word in the file chooses one of several forms, a file need fit only one of them, as they differ in
-    their fields.
+    Where a word in the file chooses one of several forms, the schema accepts any one of them.
     """
     from workhold.files.input_forms import LoadsFile, WorkpieceFile
     from workhold.files.result.fixture_forms import ResultFile

@@ -2,16 +2,15 @@
 
 A TOML file has a table ``[[job]]`` for each job, a CSV file has a row for each::
 
-    unit = "mm"                          # what stands here counts for every job
-    toolkit = ["plate-20mm", "own.toml"]
+unit = "mm" # entries here apply to every job toolkit = ["plate-20mm", "own.toml"]
 
     [[job]]
     part = "bracket.dxf"                 # or a folder, or a built-in name
     avoid = [3, 7]
     load = ["force=200 at=10,5 direction=30..60"]
 
-The words stand in the first line of a CSV file; several entries of a cell stand apart by ``|``. Parts,
-toolkits and files of loads are sought beside the file first. A family takes files, folders and names, and
+The first line of a CSV file has the option names; several entries of a cell are separated by ``|``. Parts,
+toolkits and files of loads are looked up beside the file first. A family takes files, folders and names, and
 files of jobs with rules for each part.
 """
 
@@ -59,10 +58,10 @@ class JobOptions:
 
     Parameters
     ----------
-    place : where the job stands in its file, for messages.
+    place : the job's position in its file, for messages.
     part : file, folder or built-in name.
     toolkits : names and files; None where the file gives none.
-    options : by names of options, what the file says of reading the part, its fixtures, their seating and the
+    options : by option name, the file's values for reading the part, its fixtures, their seating and the
         program.
     """
 
@@ -72,9 +71,7 @@ class JobOptions:
     options: Mapping[str, Any]
 
     def replace_options(self, typed: Words) -> Words:
-        """Return a group of options with the values typed, replaced by the job's file where that gives an
-        option.
-        """
+        """Return a group of typed options, in which options given in the job's file replace the typed ones."""
         return evolve(typed, **self.make_options(type(typed)))
 
     def make_options(self, group: type[AttrsInstance]) -> dict[str, Any]:
@@ -105,7 +102,7 @@ def read_jobs(path: Path) -> list[JobOptions]:
 
 
 def read_toml_entries(text: str) -> Iterator[dict[str, Any]]:
-    """Yield the entries of each job: those that stand above all jobs, overridden by the job's own."""
+    """Yield the entries of each job: the file's common entries, overridden by the job's own."""
     from workhold.files.budget import LIMITS, Budget
     from workhold.files.tables import MOST_COLUMNS
     from workhold.files.text import parse_toml

@@ -64,7 +64,8 @@ COMMANDS = {
         "Report where strap clamps hold the part of fixture N down against its three locators, with the least force."
     ),
     "bend": (
-        "Report how far clamps bend the part of fixture N, or of the best fixtures, and how far it gives at the cutter."
+        "Report how far clamps bend the part of fixture N, or of the best fixtures, and how far the part moves "
+        "at the cutter."
     ),
     "sheet": (
         "Write the setup sheet of fixture N of a result: plan to scale, pegs, opening, part zero, quality, "
@@ -75,8 +76,8 @@ COMMANDS = {
         "spreadsheet."
     ),
     "explore": "Try PART in many toolkits: how many fixtures each has, and the figures of its first choice.",
-    "copies": "Report how many copies of fixture N a plate holds at once, and where each stands.",
-    "family": "Report which peg patterns hold many of PARTS, and what each fewer set-up costs in quality.",
+    "copies": "Report how many copies of fixture N a plate holds at once, and the place of each.",
+    "family": "Report which peg patterns hold many of PARTS, and how much quality is lost with fewer set-ups.",
     "batch": (
         "Try many parts in many toolkits: every part with every toolkit, into tables, a report and result "
         "files."
@@ -87,11 +88,10 @@ COMMANDS = {
     "features": "List the numbered faces of PART, as pictures and result files name them.",
     "parts": "List the built-in parts.",
     "program": (
-        "Report what workhold understood of a program for the mill: tools, lengths, heights, "
-        "time, lines left out."
+        "Report how workhold reads a program for the mill: tools, lengths, heights, time, lines left out."
     ),
     "toolkits": "List the vises, plates and fences that come with workhold, or show all figures of one.",
-    "drill": "Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.",
+    "drill": "Write drawings of a vise's jaw plates with their dowel holes and bolt holes, to drill them by.",
     "verify": "Prove or refute every fixture of a result, and every number written with it.",
     "schema": "Print the JSON Schema of a part, a toolkit, loads, a query or a result, or list them.",
     "serve": "Serve the page: from a drawing to a setup sheet in the browser.",
@@ -102,7 +102,7 @@ COMMANDS = {
         "Answer FreeCAD's workbench: design, and give the bodies and pictures of the chosen fixture."
     ),
     "doctor": "Report what is installed, what is missing, and what each missing library would be good for.",
-    "completion": "Print the script that lets a shell complete the commands and options of workhold.",
+    "completion": "Print a script with which a shell completes the commands and options of workhold.",
 }
 
 # The modules of several commands; every other command stands in a module of its own. A command is the

@@ -1,6 +1,6 @@
 """Arguments and options of several commands: the part and how it is read, a result file, a rank, a unit.
 
-Words that describe a toolkit stand in :mod:`workhold.cli.toolkit_options`, words of a search in
+Options of a toolkit are in :mod:`workhold.cli.toolkit_options`, options of a search in
 :mod:`workhold.cli.search_options`.
 """
 
@@ -128,7 +128,7 @@ class PartOptions:
         ----------
         part : a file or a built-in name.
         heights, peg_diameter : as for ``files.part.load.read_workpiece``.
-        said : remarks that are not printed again.
+        said : remarks already printed; they are not printed again.
 
         Raises
         ------

@@ -1,8 +1,9 @@
-"""Outputs of a command: files it may write over, the forms of a result file, and the object of ``--json``.
+"""Outputs of a command: files that it may overwrite, the forms of a result file, and the object of
+``--json``.
 
-A command writes over its own earlier outputs, and over nothing that it reads. What ``--json`` prints on
-standard output is for other programs: lengths in mm, angles in degrees and forces in N whatever ``--unit``
-says. Remarks and errors go to standard error as always, and the exit codes are the same.
+A command may overwrite its own earlier outputs, but never its inputs. What ``--json`` prints on standard
+output is for other programs: lengths in mm, angles in degrees and forces in N whatever ``--unit`` says.
+Remarks and errors go to standard error as always, and the exit codes are the same.
 """
 
 from __future__ import annotations

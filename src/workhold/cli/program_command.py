@@ -1,4 +1,4 @@
-"""The command ``program``: what was understood of a program for the machine, as tables and as a picture."""
+"""The command ``program``: shows how workhold has read a program for the machine, as tables and as a picture."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ RUN_THICKNESS = make_option(
     )
 )
 class ProgramViewOptions:
-    """The options of a program that is looked at alone, as typed."""
+    """The options of a program that is shown by itself, as typed."""
 
     if TYPE_CHECKING:
         tools: str | None
@@ -93,7 +93,7 @@ def program(
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
-    """Report what workhold understood of a program for the mill: tools, lengths, heights, time, lines left out.
+    """Report how workhold reads a program for the mill: tools, lengths, heights, time, lines left out.
 
     A program that cannot be read is refused with the line. The command does not search, and needs no part.
 
@@ -119,7 +119,7 @@ def program(
 
 
 def convert_program_to_data(read: ReadProgram) -> dict[str, Any]:
-    """Return what was understood of a program as plain data; lengths in mm."""
+    """Return the program as it was read, as plain data; lengths in mm."""
     from workhold.model.program_figures import bound_tip, measure_tools
 
     program = read.program
@@ -199,7 +199,7 @@ def describe_stock(program: Program, unit: Unit) -> str:
 def report(read: ReadProgram, unit: Unit, from_z_zero: bool) -> None:
     """Print the figures of each tool and a summary.
 
-    ``from_z_zero`` says that heights count from the program's Z0.
+    ``from_z_zero`` tells that heights are measured from the program's Z0.
     """
     from workhold.model.program_figures import bound_tip, measure_tools
 

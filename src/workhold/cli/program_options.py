@@ -1,5 +1,5 @@
-"""Options of a program that the fixtures have to keep clear of: where its zero is, and how its tools cut
-where the table of tools does not say.
+"""Options of a program that the fixtures keep clear of: its zero, and cutting data for tools that the table
+of tools does not describe.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ class ProgramOptions:
     def adapt_part_options(self, part: str, reading: PartOptions) -> PartOptions:
         """Return the options for reading a part.
 
-        For a drawing the peg height is removed, as it counts for the fixtures only.
+        For a drawing the peg height is removed: it concerns the fixtures only.
         """
         is_drawing = Path(part).suffix.lower() not in SOLIDS
         return evolve(reading, **NO_HEIGHT) if is_drawing else reading
@@ -122,8 +122,8 @@ class ProgramOptions:
     ) -> dict[str, Any]:
         """Return "program", "thickness" and "peg_height" (mm) of a query as keyword arguments.
 
-        Without a program: only the heights, and {} for a solid or a part that is not read yet. Remarks on the
-        program are printed.
+        Without a program it has only the heights; it is {} for a solid and for a part that is not read yet.
+        Remarks on the program are printed.
 
         Parameters
         ----------
@@ -133,8 +133,8 @@ class ProgramOptions:
         Raises
         ------
         InputError
-            For words that cannot be read, a program that cannot be read, and heights that are needed and not
-            given; also for options of a program without a program.
+            For options or a program that cannot be read, for missing heights that are needed, and for options
+            of a program without a program.
         """
         if self.program is None:
             # Of a thickness other options make use as well.

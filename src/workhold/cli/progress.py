@@ -141,7 +141,7 @@ class BatchProgress:
             self.bars.update(self.whole, advance=seconds, words=self.words)
 
     def note_begun(self, worker: str, title: str) -> None:
-        """Show the task that a worker has begun, in a line of its own."""
+        """Show the task that a worker has begun, on a separate line."""
         if self.bars is None:
             return
         self.note_ended(worker)

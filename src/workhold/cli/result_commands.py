@@ -77,7 +77,7 @@ class VerifyTask:
     ----------
     of_supports : whether the file lists supports instead of fixtures.
     listed : number of unproven entries that are listed on the terminal.
-    complete, threads : whether a new search looks for fixtures that the file leaves out, and its number of
+    complete, threads : whether a new search looks for fixtures missing from the file, and its number of
         threads.
     """
 
@@ -116,11 +116,11 @@ def verify(
     """Prove or refute every fixture of a result, and every number written with it.
 
     The command derives each fixture again from the workpiece, the toolkit, the pegs and the faces alone, in
-    arithmetic that bounds its rounding errors. It uses nothing of the search. It decides coincidences, such as
-    an opening of exactly the smallest gap, because the edge of every rule stands 1e-9 mm off them. A case that
-    lies exactly on such an edge is undecided. A file alone cannot show, for example, that no fixture was left
-    out; --complete checks this with a new search of the file's query. The exit code is 0 if nothing is
-    refuted, and 2 otherwise.
+    arithmetic that bounds its rounding errors. It uses nothing of the search. It can decide coincidences,
+    such as an opening of exactly the smallest gap, because the limit of every rule is set 1e-9 mm away from
+    them. A case exactly at such a limit is undecided. A file alone cannot show, for example, that no fixture
+    was left out; --complete checks this with a new search of the file's query. The exit code is 0 if nothing
+    is refuted, and 2 otherwise.
 
     Example: workhold verify part.json
     """
@@ -197,7 +197,7 @@ def compare_with_search(outcome: Verification, listing: WrittenListing, workers:
 
 
 def describe_verified_scope(outcome: Verification, asked: bool, listing: WrittenListing) -> list[str]:
-    """Return sentences on what was compared, or on what a file alone cannot show."""
+    """Return sentences on the comparison that was made, or on what a file alone cannot show."""
     from workhold.verification.verify import list_not_shown
 
     if outcome.is_compared:

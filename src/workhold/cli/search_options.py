@@ -92,7 +92,7 @@ LOADS_TYPED = {"load": make_list_attribute(LOAD), "loads": make_word_attribute(L
 
 @frozen(these=make_option_attributes(OF_LOADS, jaw_force=LOADS_TYPED))
 class LoadOptions:
-    """The options of loads on a fixture that is known, as typed; None for those not given."""
+    """The options of loads on a given fixture, as typed; None for those not given."""
 
     if TYPE_CHECKING:
         load: list[str] | None
@@ -159,7 +159,7 @@ BESIDE = {
 
 @frozen(these=make_option_attributes((*OF_RESTRICTIONS, *OF_SEARCHES), **BESIDE))
 class QueryOptions:
-    """The options of what is asked for, as typed; None for those not given."""
+    """The options that describe the wanted fixtures, as typed; None for those not given."""
 
     if TYPE_CHECKING:
         not_on_faces_cut_in: str | None
@@ -201,10 +201,11 @@ class QueryOptions:
 def avoid_faces_cut_before(
     restrictions: Restrictions, workpiece: Workpiece, before: str | None
 ) -> Restrictions:
-    """Return restrictions that also avoid the solid's faces that the set-up before cut (and so had to avoid).
+    """Return restrictions that also avoid the solid's faces that the previous set-up cut (and so had to
+    avoid).
 
-    ``before`` is the result file of that set-up; for None the restrictions are returned unchanged. Raises
-    InputError for parts without a solid's face numbers.
+    ``before`` is the result file of the previous set-up; for None the restrictions are returned unchanged.
+    Raises InputError for parts without a solid's face numbers.
     """
     if before is None:
         return restrictions

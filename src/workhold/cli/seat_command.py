@@ -1,4 +1,6 @@
-"""The command ``seat``: whether the part ends up in the pose of a fixture, and where else it can rest."""
+"""The command ``seat``: whether the part ends up in the pose of a fixture, and the other places where it can
+rest.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ SIDES = ("both", "drawn", "turned-over")
 
 @frozen
 class SeatOptions:
-    """The options of what is shown of a seating and where it is drawn, as typed."""
+    """The options that choose what is shown of a seating and where it is drawn, as typed."""
 
     side: str = make_option(
         None, "WORD", "Side of the part that may lie up: drawn, turned-over, or both.", default="both"
@@ -85,9 +87,9 @@ class SeatTask:
 def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatOptions) -> None:
     """Report whether the part ends up in the pose of fixture N when you tighten the vise or the clamp.
 
-    The report says how wide the jaws may stand open when you let the part go, and how far off its place the
-    part may lie. It lists the other places in which the part can come to rest, and what a caliper reads
-    there. For two clamps it says how to put the part in by hand, and in which order to tighten them.
+    The report says how far the jaws may be open when you let the part go, and how far the part may lie from
+    its place. It lists the other places in which the part can come to rest, and what a caliper reads there.
+    For two clamps it says how to put the part in by hand, and in which order to tighten them.
 
     Example: workhold seat part.json 1 --draw seats.svg
     """
@@ -109,7 +111,7 @@ def parse(result_file: str, rank: int, words: SeatOptions) -> SeatTask:
 
 
 def ask(asked: SeatTask) -> Seating:
-    """Return the fixture's seating: the result's if it has it, else computed here."""
+    """Return the seating of the fixture, taken from the result if it is there, else computed."""
     result = asked.result
     known: Seating | None = asked.fixture.seating
     if known is not None:
@@ -213,8 +215,8 @@ def describe_seating(fixture: Fixture, result: Result, unit: Unit) -> list[str]:
 
 
 def describe_setting(seating: Seating, gauge: Gauge, unit: Unit) -> list[str]:
-    """Return sentences on how far to open, what the setting then reads,
-    and how far off its place the part may lie.
+    """Return sentences on how far to open, what the caliper then reads, and how far the part may lie from its
+    place.
     """
     from workhold.model.seating import DRY_STEEL
 

@@ -1,7 +1,7 @@
 """The commands that serve a browser, an agent or a shell: ``serve``, ``mcp`` and ``completion``.
 
-The page is served on this machine or for others; an agent has tools over the Model Context Protocol, on
-standard input and output.
+``serve`` offers the page on this machine or to others. ``mcp`` offers tools to an agent over the Model
+Context Protocol, on standard input and output.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def make_limit_option(default: str | None, metavar: str, variable: str, help: st
 
 @frozen
 class ServerOptions:
-    """The options of where a server listens and to whom, as typed."""
+    """The options of the server's address and its trusted clients, as typed."""
 
     host: str = make_option(
         None, "ADDRESS", "Address to listen at; 0.0.0.0 lets other machines in.", default="127.0.0.1"
@@ -112,7 +112,7 @@ class ServerOptions:
 
 @frozen
 class LimitOptions:
-    """The options of how much a server gives, as typed or as the environment says."""
+    """The options that limit the server's resources, as typed or from the environment."""
 
     upload_size: str = make_limit_option("20", "MB", "UPLOAD_SIZE", "Largest file with a part.")
     searches: str = make_limit_option("2", "N", "SEARCHES", "Number of searches that run at the same time.")
@@ -160,8 +160,8 @@ class LimitOptions:
 def serve(*, words: ServerOptions, limits: LimitOptions) -> None:
     """Serve the page: from a drawing to a setup sheet in the browser.
 
-    Only this machine can use the page, unless --host says otherwise. Other programs can use the same server:
-    see /api/openapi.json. Ctrl-C stops it.
+    Only this machine can use the page, unless --host names another address. Other programs can use the same
+    server: see /api/openapi.json. Ctrl-C stops it.
 
     Example: workhold serve --open
     """
@@ -226,7 +226,7 @@ def mcp() -> None:
 
 
 def make_tool_server(folder: Path) -> Any:
-    """Return the MCP server of the tools; it writes results without a named file into ``folder``."""
+    """Return the MCP server of the tools; a result whose file is not named is written into ``folder``."""
     import mcp_types as types
     from anyio import get_cancelled_exc_class
     from anyio.to_thread import run_sync
@@ -298,7 +298,7 @@ VARIABLE = "_WORKHOLD_COMPLETE"
 
 
 def completion(shell: Annotated[str, typer.Argument(metavar="SHELL", help="bash, zsh or fish.")]) -> None:
-    """Print the script that lets a shell complete the commands and options of workhold.
+    """Print a script with which a shell completes the commands and options of workhold.
 
     In ~/.bashrc: eval "$(workhold completion bash)"; in ~/.zshrc, after compinit: eval "$(workhold completion
     zsh)"; for fish write it to ~/.config/fish/completions/workhold.fish.

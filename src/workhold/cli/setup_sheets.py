@@ -1,6 +1,6 @@
 """Files that commands write of a set-up: setup sheets, and bodies in GLB and STEP files.
 
-The sheets here are those of a design's first choice, and those with supports or with the part's other side.
+The sheets are those of a design's first choice, with supports or with the part's other side if wanted.
 """
 
 from __future__ import annotations
@@ -155,10 +155,10 @@ def write_first_sheet(
 
     Parameters
     ----------
-    out : path of the result file, whose hash stands on the sheet.
+    out : path of the result file; its hash is printed on the sheet.
     thickness : thickness of the part in mm where supports are wanted, else None. With it, the first choice is
         the first fixture that has supports.
-    before : result file of the set-up of the part's other side before this one.
+    before : result file of the previous set-up, on the part's other side.
     supported : supports of the best fixtures, in order, as far as they are known; () for none.
     """
     from workhold.presenting.papers import write_paper
@@ -270,10 +270,10 @@ def choose_best_supports(
 
 
 def find_first_side(result: Result, rank: int, before: str) -> FirstSide:
-    """Return what a fixture shares with the best fixture of another result,
-    in which the solid has another side up.
+    """Return what the fixture of a rank has in common with the best fixture of another result, in which
+    another side of the solid is up.
 
-    Raises InputError for parts that are not of one solid.
+    Raises InputError if the parts are not from one solid.
     """
     from workhold.files.result.reader import read_result
     from workhold.model.first_side import compare_with_first_side

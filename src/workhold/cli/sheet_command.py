@@ -63,7 +63,7 @@ FIRST_SETUP = make_option(
     )
 )
 class SheetOptions:
-    """The options of what stands on a sheet, as typed; None for those not given."""
+    """The options that choose the contents of a sheet, as typed; None for those not given."""
 
     if TYPE_CHECKING:
         support_height: str | None
@@ -241,8 +241,8 @@ def refuse_in_space(
 ) -> None:
     """Raise InputError for options that the kind of file cannot have.
 
-    They are: what only paper can show, for a file for CAM (``for_cam``); supports (``supported``), for such a
-    file that shows none (``shows_supports`` False); a support height without supports.
+    A file for CAM (``for_cam``) cannot show contents that only paper can show. It shows supports
+    (``supported``) only if ``shows_supports``. A support height needs supports.
     """
     if for_cam and first_setup is not None:
         raise InputError(

@@ -140,7 +140,7 @@ def parse(
 def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
     """Return a load case for each load.
 
-    It is () for a fixture that holds by friction, where loads are counted by the design.
+    It is () for a fixture that holds by friction, since the design has already checked the loads.
     """
     from workhold.statics.loads import compute_load_cases
 
@@ -259,8 +259,7 @@ def list_bending_sentences(bent: BendingFigures, mover: str, unit: Unit) -> list
 
 
 def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> BentPegs | None:
-    """Return how far the pegs of a fixture bend; None where the heights at which they are pressed are not
-    known.
+    """Return how far the pegs of a fixture bend; None if the heights at which they press are not known.
 
     ``jaw_force`` in N replaces that of the result unless None.
     """
@@ -277,10 +276,10 @@ def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> B
 
 
 def describe_bending(result: Result, rank: int, unit: Unit, jaw_force: float | None) -> list[Table | str]:
-    """Return a table and sentences on how far pegs bend, and how far that moves the part.
+    """Return a table and sentences on how far pegs bend and how far that moves the part.
 
-    It is [] where the heights at which they are pressed are not known. ``jaw_force`` in N replaces the
-    result's unless None.
+    It is [] if the heights at which pegs press are not known. ``jaw_force`` in N replaces the result's unless
+    None.
     """
     bent = compute_peg_bending(result, rank, jaw_force)
     if bent is None:
@@ -382,8 +381,8 @@ def list_program_clearances(
 ) -> dict[str, Any]:
     """Return "program_clearance" and "program_forces" as plain data; unknown ones are left out.
 
-    The first is where the program's tools come nearest, the second the forces that they need. Jaw force and
-    jaw are as for :func:`describe_program_clearances`.
+    The first says where the program's tools come nearest to the fixture, the second which clamping forces
+    their cuts need. Jaw force and jaw are as for :func:`describe_program_clearances`.
     """
     from workhold.statics.program_clearance import find_nearest_passing
     from workhold.statics.program_forces import find_cutting_need
@@ -396,9 +395,7 @@ def list_program_clearances(
 
 
 def convert_bending_to_data(result: Result, rank: int, jaw_force: float | None = None) -> dict[str, Any]:
-    """Return {"pins": how far pegs bend, as plain data}; {} where the heights at which they are pressed are
-    not known.
-    """
+    """Return {"pins": how far pegs bend, as plain data}; {} if the heights at which pegs press are not known."""
     bent = compute_peg_bending(result, rank, jaw_force)
     return {} if bent is None else {"pins": bent.to_dict()}
 
@@ -406,10 +403,11 @@ def convert_bending_to_data(result: Result, rank: int, jaw_force: float | None =
 def describe_program_clearances(
     result: Result, rank: int, unit: Unit, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> list[str]:
-    """Return sentences on how near the program's tools come to a
-    fixture and which forces they ask for; [] without a program.
+    """Return sentences on how near the program's tools come to a fixture and which clamping forces their cuts
+    need.
 
-    ``jaw_force`` in N replaces the result's. For ``jaw`` see :func:`workhold.statics.loads.jaw_stiffness`.
+    The list is empty without a program. ``jaw_force`` in N replaces the result's. For ``jaw`` see
+    :func:`workhold.statics.loads.jaw_stiffness`.
     """
     from workhold.statics.program_clearance import find_nearest_passing
     from workhold.statics.program_forces import find_cutting_need

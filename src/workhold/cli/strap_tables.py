@@ -69,8 +69,8 @@ def tabulate_straps(result: Result, entries: ShownEntries, count: int, unit: Uni
 
 
 def describe_completeness(result: Result, unit: Unit) -> str:
-    """Return sentences on which parts of the list are complete and, with loads, which friction the forces are
-    stated with.
+    """Return sentences that say which parts of the list are complete and, with loads, which coefficients of
+    friction the forces assume.
     """
     from workhold.model.straps import StrappedHold
     from workhold.supports.straps import make_question
@@ -127,8 +127,8 @@ def tabulate_strapped_fixture(fixture: Fixture, rank: int, total: int, unit: Uni
 
 
 def list_strap_forces(hold: StrappedHold, asked: StrapQuestion, unit: Unit) -> list[Table | str]:
-    """Return the force of each strap that each load and the program need, as a table and sentences, with what is
-    assumed.
+    """Return a table and sentences: the force of each strap that each load and the program need, and the
+    assumptions.
     """
     from workhold.supports.words_of_straps import (
         describe_assumptions,

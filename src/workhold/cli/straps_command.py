@@ -40,7 +40,7 @@ STRAPS, PART, LOADS = "Straps", "Heights of the part", "Loads"
 
 @frozen
 class StrapOptions:
-    """The options of straps and of what acts on the part, as typed; None for those not given."""
+    """The options of straps and of the loads on the part, as typed; None for those not given."""
 
     count: str = make_option(STRAPS, "K", "Number of straps, 1 to 4.", default="2")
     tip_radius: str = make_option(STRAPS, "LENGTH", "Radius of a strap's round tip.", default="6mm")
@@ -113,10 +113,11 @@ def straps(
 ) -> None:
     """Report where strap clamps hold the part of fixture N down against its three locators, with the least force.
 
-    The side clamps of the fixture are left out. A hand pushes the part against the locators until the straps are
-    tight. Friction under the tips and on the plate holds it: the report has the force of each strap that the loads
-    ask for, with the coefficients and the safety factor. The straps are the best of a finite set of places. The tools of
-    the result's program, or of --program, pass them, and press on the part where their forces are known.
+    The side clamps of the fixture are left out. A hand pushes the part against the locators until the straps
+    are tight. Then friction under the tips and on the plate holds it. The report gives the force of each
+    strap that the loads need, with the coefficients and the safety factor. The straps are the best of a
+    finite set of places. The tools of the result's program, or of --program, keep clear of them. Their
+    cutting forces, if known, count as loads.
 
     Example: workhold straps part.json 1 --thickness 25 --count 2 --load "force=300 at=50,30"
     """
@@ -142,7 +143,7 @@ def straps(
 def read_question(words: StrapOptions, machined: ProgramOptions, result: Any, unit: Unit) -> StrapQuestion:
     """Return the question of straps from the options as typed; lengths without a unit are in ``unit``.
 
-    Raises InputError where nothing loads the part: no load, typed or in the result, and no program with forces.
+    Raises InputError if nothing loads the part: no load, typed or in the result, and no program with forces.
     """
     from workhold.model.friction import SAFETY, to_coefficients
     from workhold.model.straps import StrapHardware

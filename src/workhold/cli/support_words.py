@@ -1,5 +1,6 @@
-"""Loads in space as the command reads them, and its sentences on supports: sizes, why none hold, and what
-friction adds."""
+"""Reading of loads in space, and sentences on supports: their sizes, reasons why there are none, and the gain
+by friction.
+"""
 
 from __future__ import annotations
 
@@ -56,8 +57,8 @@ def find_supports_within_limit(
 
 
 def describe_stopped_search(last: int, count: int) -> str:
-    """Return a sentence that says at which fixture the search of supports stopped, what was left out, and how
-    to get it.
+    """Return a sentence on a search of supports that stopped early: the last fixture done, those left out,
+    and how to get them.
 
     ``last`` is the rank of that fixture, ``count`` the number of fixtures asked for.
     """

@@ -137,7 +137,7 @@ class SupportOptions:
 
 @frozen
 class SupportsTask:
-    """Supports that are asked for, and where the answer goes.
+    """A search for supports, and where its answer goes.
 
     Parameters
     ----------
@@ -193,9 +193,9 @@ def supports(
 ) -> None:
     """Report where three supports hold the part up under fixture N, and where a clamp presses it down.
 
-    Pegs hold a part in the plane, but they do not keep it from tipping. Three supports, and a clamp that
-    presses inside their triangle, do, whatever the heights at which the pegs press. The list begins with the
-    set whose clamp needs the least force under the loads.
+    Pegs hold a part in the plane, but they do not keep it from tipping. Three supports do, with a clamp that
+    presses inside their triangle, whatever the heights at which the pegs press. The list begins with the set
+    whose clamp needs the least force under the loads.
 
     Example: workhold supports part.json 1 --thickness 12 --load "force=150 at=20,15 z=8..12 axial=-20..60"
     """
@@ -258,7 +258,7 @@ def parse(
 
 
 def ask(asked: SupportsTask) -> Supports:
-    """Return the supports found, with smaller pads where pads of the usual size find no place.
+    """Return the supports found, with smaller pads if there is no place for pads of the usual size.
 
     After Ctrl-C, return the best found so far.
     """

@@ -1,4 +1,4 @@
-"""Tables of words, and printing them with sentences as wide as there is room for."""
+"""Tables of words, and printing of tables and sentences in the width of the terminal."""
 
 from __future__ import annotations
 
@@ -63,8 +63,8 @@ class Table:
     def fit_to_width(self, width: int | None) -> FittedTable:
         """Return the table as lines of at most ``width`` characters; None means no limit.
 
-        A table that is too wide is narrowed in this order: wrap headings; leave out spare columns, which a
-        last line says; wrap columns of words, the widest first; leave out columns from the right, but never
+        A table that is too wide is narrowed in this order: wrap headings; leave out spare columns and say so
+        in a last line; wrap columns of words, the widest first; leave out columns from the right, but never
         the first. No number is cut.
         """
         right = [column.startswith(">") for column in self.columns]

@@ -275,7 +275,7 @@ class NamedToolkit:
 
 
 def make_query(workpiece: Workpiece, named: NamedToolkit, asked: dict[str, Any]) -> Query | InputError:
-    """Return the query for a toolkit, or the error (not raised) that says why there is no such toolkit."""
+    """Return the query for a toolkit, or the error (not raised) that says why the toolkit cannot be made."""
     from workhold.fixels.kinds import make_toolkit
     from workhold.model.query import Query
 
@@ -377,8 +377,8 @@ def load_named_toolkits(
     """Return the named toolkits, or for None all presets that have every varied field, each with the fields
     ``said`` set.
 
-    Where ``kind`` is given, only those fields count that this kind has, and all toolkits are made of it.
-    Raises InputError for fields that a named toolkit does not have, and where no toolkit is left.
+    With ``kind`` given, all toolkits are of this kind, and only its fields are used. Raises InputError for
+    fields that a named toolkit does not have, and where no toolkit is left.
     """
     from workhold.files.toolkit_file import list_preset_names, load_toolkit
     from workhold.fixels.kinds import find_table

@@ -47,22 +47,20 @@ FRACTION = re.compile(r"(?P<sign>[+-]?)(?:(?P<whole>[0-9]+)[ -])?(?P<above>[0-9]
 def read_unit(name: str | None) -> Unit:
     """Return the unit of lengths typed and shown: the named one, else that of the environment, else mm.
 
-    For the name of a drawing's pixels, such as px96, it is mm as well.
+    A name for a drawing's pixels, such as px96, also gives mm.
     """
     name = read_usual_unit() if name is None else name
     return MILLIMETRE if name is None or find_pixels_per_inch(name) is not None else find_unit(name)
 
 
 def read_usual_unit() -> str | None:
-    """Return the name of the unit in the environment variable ``WORKHOLD_UNIT``;
-    None where that is not set.
-    """
+    """Return the name of the unit in the environment variable ``WORKHOLD_UNIT``; None if it is not set."""
     return os.environ.get("WORKHOLD_UNIT") or None
 
 
 def choose_printed_unit(name: str | None, toolkit: Toolkit) -> Unit:
-    """Return the unit of lengths shown of a fixture: the named one, else the environment's, else that of the
-    holes.
+    """Return the unit in which a fixture's lengths are shown: the named one, else the environment's, else
+    that of the holes.
 
     Numbers that are typed without a unit stay in the unit of :func:`read_unit`.
     """

@@ -1,8 +1,8 @@
-"""The command ``workbench``: what FreeCAD's workbench asks, answered in one process that reads the part once.
+"""The command ``workbench``: answers FreeCAD's workbench in one process that reads the part once.
 
 The workbench writes ``order.json`` into a folder, and finds there the result of the search and the pictures
-drawn. What it has to say stands on standard output as one JSON object. Bodies are handed over as prisms, for
-FreeCAD has a modeller of its own: so the library for STEP files is needed to read the part only.
+drawn. The answer is one JSON object on standard output. Bodies are passed as prisms, since FreeCAD can model
+them itself. So the library for STEP files is needed only to read the part.
 """
 
 from __future__ import annotations
@@ -281,7 +281,7 @@ def identify_fixture(fixture: Mapping[str, Any]) -> str:
 def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
     """Return the bodies (without the part), pose, holes and marks of the fixture of a rank, as plain data.
 
-    Its picture is written if wanted.
+    Its picture is written if the order asks for it.
     """
     from workhold.presenting.assembly import Assembly
 
@@ -309,7 +309,7 @@ def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> di
 
 
 def find_supports_under(fixture: Fixture, query: Query) -> tuple[ChosenSupports | None, str]:
-    """Return the best three supports under a fixture and "", or None and why there are none."""
+    """Return (the best three supports under a fixture, ""), or (None, the reason why there are none)."""
     from workhold.model.support_triples import ChosenSupports
     from workhold.supports.asking import support_with_smaller_sizes, try_smaller_requests
     from workhold.supports.words import explain_no_set
@@ -323,7 +323,7 @@ def find_supports_under(fixture: Fixture, query: Query) -> tuple[ChosenSupports 
 
 
 def draw_nearest_miss(result: Result, folder: Path) -> None:
-    """Write a picture of the nearest miss into the folder, where there is one."""
+    """Draw the nearest miss into the folder, if there is one."""
     from workhold.drawing.fixture_pictures import draw_fixture
     from workhold.search.explaining import explain
 

@@ -87,7 +87,7 @@ class CopiesTask:
 
 @spread_option_groups
 def copies(result_file: ResultArgument, number: RankArgument, *, words: CopiesOptions) -> None:
-    """Report how many copies of fixture N a plate holds at once, and where each stands.
+    """Report how many copies of fixture N a plate holds at once, and the place of each.
 
     The command repeats the fixture by whole columns and rows, so that the parts, pegs and clamps of the
     copies keep clear of each other.
@@ -213,7 +213,7 @@ def drill(
     unit: str | None = SHOWN_UNIT,
     json_: bool = JSON,
 ) -> None:
-    """Write the plates of a vise's jaws with their dowel holes and bolt holes, to drill them from.
+    """Write drawings of a vise's jaw plates with their dowel holes and bolt holes, to drill them by.
 
     Blocked holes are left out. The file is in mm, and the plates lie side by side.
 

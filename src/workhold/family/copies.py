@@ -1,16 +1,16 @@
 """Several copies of one part on one plate, and their picture: a fixture repeated by whole columns and rows.
 
-Two copies are clear of each other when pegs and clamps do not overlap and everything else is a gap apart.
-That is the two outlines, and the pegs and clamps of one copy from the part of the other. That depends only on
-the columns and rows between the copies. So the most copies are a largest set of places no two of which are
-too near: a maximum independent set. HiGHS finds it. Each set of places that are pairwise too near is a
-constraint: it holds one copy at most.
+Two copies are clear of each other when their pegs and clamps do not overlap, and each part is a gap away from
+the other part and from the other copy's pegs and clamps. This depends only on the columns and rows between
+the copies. So a packing is a set of places no two of which are too near, and the largest is a maximum
+independent set. HiGHS finds it. Each set of places that are pairwise too near is a constraint: it holds one
+copy at most.
 
 The picture shows every hole of the plate, and every copy with its pegs and clamps.
 
 Glossary
 --------
-shift : whole columns and rows by which a copy is moved beside the fixture that is repeated.
+shift : whole columns and rows by which a copy is moved from the repeated fixture.
 too near : a shift is too near when two copies that far apart are not clear of each other.
 """
 
@@ -84,7 +84,7 @@ class CopyOutlines:
 
 
 def collect_bodies(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> CopyOutlines:
-    """Return the space that a fixture takes up; arcs become chords at most ``SAGITTA`` mm off."""
+    """Return the space that a fixture takes up; arcs are replaced by chords at most ``SAGITTA`` mm away."""
     chords = []
     for loop in workpiece.loop_segments:
         for segment in loop:
@@ -137,8 +137,8 @@ def is_clear(bodies: CopyOutlines, move: Array, gap: float) -> bool:
     """Return whether two copies, the second one moved by ``move`` (2,) in mm, keep clear of each other.
 
     Bodies (pegs and clamps) must not overlap. The part of each copy must be ``gap`` mm from the part and the
-    bodies of the other copy. Comparing boundaries is enough: no copy fits within another, so where they
-    overlap, their outlines cross.
+    bodies of the other copy. Comparing boundaries is enough: no copy fits inside another, so overlapping
+    copies have outlines that cross.
     """
     outline, cores = bodies.outline + move, bodies.cores + move
     slack = GAP_SLACK
@@ -175,14 +175,14 @@ def find_too_near_shifts(
 
 
 def list_places_on_plate(fixture: Fixture, toolkit: Toolkit, columns: int, rows: int) -> list[Shift]:
-    """Return the shifts (columns, rows) at which a fixture stands on a plate of this size, row by row.
+    """Return the shifts (columns, rows) at which a fixture fits on a plate of this size, row by row.
 
     ``columns`` and ``rows`` are the numbers of the plate's holes.
 
     Raises
     ------
     InputError
-        For a plate on which the fixture does not stand at all.
+        For a plate that is too small for the fixture.
     """
     used_columns, used_rows = [], []
     for peg in fixture.pegs:
@@ -221,8 +221,8 @@ def pack_copies(
     Raises
     ------
     InputError
-        For a vise (its one jaw cannot press several parts alike), for a plate that holds no copy, and when
-        SciPy is not installed.
+        For a vise, whose single jaw cannot press several parts equally, for a plate that holds no copy, and
+        when SciPy is not installed.
     """
     if toolkit.strap_set is not None:
         raise InputError(
@@ -247,7 +247,8 @@ def pack_copies(
 
 
 def place_first_fit(places: list[Shift], near: set[Shift]) -> list[Shift]:
-    """Return a greedy packing: the places in order, each taken unless it is too near to a place taken before.
+    """Return a greedy packing: go through the places in order and take each that is not too near to one
+    already taken.
 
     ``near`` are the shifts that are too near.
     """
@@ -329,9 +330,7 @@ WEIGHT = 0.6
 def make_copies(
     row: FixtureTable, toolkit: Toolkit, workpiece: Workpiece, packing: PackedCopies
 ) -> list[Fixture]:
-    """Return the copies of a fixture at all shifts of a packing; the fixture is given
-    as a table of one row.
-    """
+    """Return the copies of a fixture (a table of one row) at all shifts of a packing."""
     moved = (shift_fixture(row, toolkit, {0: columns}, rows) for columns, rows in packing.shifts)
     return [make_fixture_of_row(one, toolkit, 0, workpiece) for one in moved]
 

@@ -6,9 +6,10 @@ bound, rounded up, is the number of sets it found.
 The curve gives for each number of set-ups the least worst loss among the members, proven. At a bound on the
 loss only the sets of members that patterns hold matter, and of these only those contained in no other: few,
 even of 10^6 patterns. Let f(bound) be the smallest number of them that hold every member. It falls as the
-bound grows, and only at losses that occur. Where f differs between two bounds, bisection over the losses
-between them finds where it falls. In the bisection between two bounds a pattern is left out if it holds at
-the upper bound no more members than another pattern holds at the lower bound, so the work soon gets small.
+bound grows, and only at loss values of the table. Where f differs between two bounds, bisection over the
+losses between them finds where it falls. In the bisection between two bounds a pattern is left out if some
+other pattern already holds, at the lower bound, all members that it holds at the upper bound. So the work
+soon gets small.
 
 In shapes, S is the number of sets, M that of members, P that of patterns, and W that of words.
 """
@@ -102,7 +103,7 @@ def find_greedy_cover(sets: BoolArray) -> tuple[int, ...]:
 
 
 def find_smallest_cover(sets: BoolArray, deadline: float | None = None) -> Cover:
-    """Return a cover with the fewest sets: such that together they hold all M members.
+    """Return a cover with the fewest sets that together hold all M members.
 
     ``sets`` (S, M) says which members each set holds; every member must be in some set. After ``deadline``,
     on the clock ``time.monotonic``, the result is the best cover found, with the lower bound proven so far.
@@ -168,10 +169,10 @@ def find_first_cover(
 def complete_cover(
     sets: BoolArray, left: BoolArray, first: int, count: int, deadline: float | None
 ) -> tuple[int, ...] | None:
-    """Return at most ``count`` indices of sets, none below ``first``, that together hold the members ``left``
-    (M,).
+    """Return at most ``count`` indices of sets, all at least ``first``, that together hold the members
+    ``left`` (M,).
 
-    Returns None where no such sets were found; unless the deadline has passed, there are none.
+    Returns None if none were found. Unless the deadline has passed, none exist then.
     """
     if not left.any():
         return ()
@@ -232,8 +233,8 @@ class LossTable:
     loss: NDArray[np.float64]
 
     def make_masks(self, bound: float) -> NDArray[np.uint64]:
-        """Return for each pattern the set of members that it holds within ``bound``, as
-        bits in words (P, K).
+        """Return for each pattern, as bits in words (P, K), the set of members that it holds within the loss
+        ``bound``.
         """
         end = int(np.searchsorted(self.loss, bound, side="right"))
         out = np.zeros((len(self.words), -(-self.members // WORD)), np.uint64)
@@ -243,9 +244,7 @@ class LossTable:
         return out
 
     def select_patterns(self, chosen: IntArray) -> LossTable:
-        """Return the table reduced to the patterns at the rows ``chosen``, with rows renumbered in that
-        order.
-        """
+        """Return the table reduced to the patterns at the rows ``chosen``, renumbered in that order."""
         place = np.full(len(self.words), -1)
         place[chosen] = np.arange(len(chosen))
         kept = place[self.pattern] >= 0
@@ -253,8 +252,8 @@ class LossTable:
         return LossTable(self.members, self.words[chosen], self.number[chosen], *entries)
 
     def list_losses(self, patterns: Sequence[int]) -> NDArray[np.float64]:
-        """Return the losses (K, M) of the K patterns at some rows on each member; NaN where the pattern does
-        not hold it.
+        """Return the losses (K, M) of K patterns, given by rows, on each member; NaN where a pattern does not
+        hold the member.
         """
         out = np.full((len(patterns), self.members), np.nan)
         for row, place in enumerate(patterns):
@@ -319,8 +318,8 @@ class Search:
         """Find covers at the bounds between two indices ``low`` and ``high``, by bisection where their sizes
         differ.
 
-        The covers at both indices must be known. ``share`` is the fraction of the work that this call stands
-        for.
+        The covers at both indices must be known. ``share`` is this call's fraction of the whole work, for the
+        progress report.
         """
         if high - low < 2 or len(self.covers[low].sets) == len(self.covers[high].sets):
             self.done += share
@@ -333,7 +332,7 @@ class Search:
         self.search_between(middle, high, table, share / 2)
 
     def list_worth_trying(self, low: int, high: int, table: LossTable) -> IntArray:
-        """Return the rows of those patterns that a cover at a bound between two indices may need.
+        """Return the rows of the patterns that a cover at a bound between two indices may need.
 
         A pattern is left out if some other pattern holds, at the lower bound already, all members that the
         first one holds at the upper bound.
@@ -357,7 +356,7 @@ def compute_curve(
 
     A number of set-ups is left out where a smaller number has the same loss. Losses above ``most_loss`` are
     not accepted; within ``most_loss`` every member must be held by some pattern. After ``deadline``, on the
-    clock ``time.monotonic``, the points are those known by then.
+    clock ``time.monotonic``, only the points known so far are returned.
     """
     least = float(np.max([table.loss[table.member == one].min() for one in range(table.members)]))
     bounds = np.unique(table.loss[(table.loss >= least) & (table.loss <= most_loss)])
@@ -369,7 +368,7 @@ def compute_curve(
 
 
 def list_curve_points(search: Search) -> Iterator[Point]:
-    """Yield for each number of sets the least loss that so few allow, the smallest loss first."""
+    """Yield the curve's points, one for each number of set-ups, the smallest loss first."""
     fewest = len(search.table.words) + 1
     for place in sorted(search.covers):
         count = len(search.covers[place].sets)
@@ -386,8 +385,8 @@ def name_patterns(search: Search, place: int) -> tuple[int, ...]:
     """Return the numbers of the patterns of the lexicographically first cover at index ``place`` of the
     bounds.
 
-    It is chosen among the sets of members that no other set contains; each set is named by the first pattern
-    that has it.
+    The cover is made of maximal sets of members. A set's number is that of the first pattern that holds
+    exactly these members.
     """
     table = search.table
     masks = table.make_masks(float(search.bounds[place]))

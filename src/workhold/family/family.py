@@ -1,8 +1,8 @@
-"""A family of parts in one toolkit: its members, what was left out, the curve, and its file.
+"""A family of parts in one toolkit: its members, the excluded parts, the curve, and its file.
 
-The file has the members, the curve, and the plan at every point of it, as JSON. Its bytes depend on nothing
-but the family. Lengths are rounded to 1e-9 mm, angles to 1e-10 degree; figures and losses have twelve
-significant digits. A loss that is not finite is null.
+The file has the members, the curve, and the plan at every point of it, as JSON. Its bytes depend only on the
+family. Lengths are rounded to 1e-9 mm, angles to 1e-10 degree; figures and losses have twelve significant
+digits. A loss that is not finite is null.
 """
 
 from __future__ import annotations
@@ -69,12 +69,12 @@ SEARCHES = 0.95
 
 @frozen
 class MemberRequest:
-    """A part that is to be a member.
+    """A part to be added to a family.
 
     Parameters
     ----------
     name : unique name of the part in the family.
-    query : asks for the whole list of its fixtures.
+    query : query for the complete list of its fixtures.
     path, digest : its file and the file's SHA-256, "" where there is none.
     zero : its part zero; None for the usual one.
     """
@@ -88,8 +88,8 @@ class MemberRequest:
     def turn_over(self, read: Workpiece | None) -> MemberRequest:
         """Return the request for the other side of the part.
 
-        ``read`` is the workpiece of a solid's other side, as its file was read for it; None for a part from a
-        drawing.
+        ``read`` is the workpiece of a solid's other side, read from its file with the opposite axis up; None
+        for a part from a drawing.
 
         Raises
         ------
@@ -227,17 +227,16 @@ def make_family(
     left_out: Sequence[ExcludedPart] = (),
     progress: Callable[[float, int], None] = lambda fraction, found: None,
 ) -> Family:
-    """Return the family of some parts: fixtures are searched for each part, then the curve is computed.
+    """Return the family of some parts: search the fixtures of each part, then compute the curve.
 
     Parameters
     ----------
     asked : at least one part; all with the same toolkit and the same first figure of the ranking.
     thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
     most_loss : larger losses are not accepted; None accepts any.
-    seconds : time limit, after which the curve is what is known by then; None runs until all of it is proven.
-    same_zero : whether in a set-up the zeros of all parts must lie at the same place, and all parts be turned
-        alike.
-    left_out : parts that were left out before.
+    seconds : time limit, after which the curve known so far is returned; None runs until it is fully proven.
+    same_zero : whether all parts of a set-up must have their zeros at the same place and the same turn.
+    left_out : parts that the caller has already excluded, to be listed in the result.
     progress : called with the fraction done and the number of fixtures found.
 
     Raises
@@ -423,7 +422,7 @@ BEYOND_LOSS = "no fixture of it that may be used is within the largest loss"
 def explain_missing_member(member: Member, has_patterns: bool) -> str:
     """Return the reason why a part is not a member.
 
-    ``has_patterns`` says whether any fixture of the part may be used.
+    ``has_patterns`` tells whether any fixture of the part may be used.
     """
     inside = member.query.toolkit.wording.inside
     if not member.fixtures:
@@ -528,9 +527,9 @@ def make_peg_entry(peg: Peg, toolkit: Toolkit) -> dict[str, Any]:
 
 
 def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str, Any]:
-    """Return as a JSON object how a member lies in a set-up, in mm and degrees.
+    """Return the JSON object of how a member lies in a set-up, in mm and degrees.
 
-    ``number`` is the member's number; fixtures have their numbers in the lists.
+    ``number`` is the member's number. Fixtures are given by their numbers in the members' lists.
     """
     fixture = one.fixture
     entry = {
@@ -565,8 +564,8 @@ def make_holding_entry(one: Holding, toolkit: Toolkit, number: int) -> dict[str,
 
 
 def make_opening_entry(fixture: Fixture, toolkit: Toolkit) -> dict[str, Any]:
-    """Return {"opening": ...} with the length in mm to set for a part; with two clamps a list of both
-    lengths.
+    """Return {"opening": ...} with the jaw opening in mm to set for a part; with two clamps a list of both
+    openings.
     """
     lengths = [round_length_for_file(setting.length) for setting in list_length_settings(fixture, toolkit)]
     return {"opening": lengths[0] if len(lengths) == 1 else lengths}

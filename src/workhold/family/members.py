@@ -1,7 +1,7 @@
 """A member of a family: a part, or its other side, with the best fixture of each pattern that holds it.
 
 A fixture is judged by its loss, and by whether it may be used at all. Turned over about its y axis for the
-second operation, a part shows the mirrored outline. Whatever is given in its own coordinates is mirrored too:
+second operation, a part shows the mirrored outline. All data in the part's coordinates are mirrored too:
 faces, zones, loads, and part zero, which stays the same point of the part.
 """
 
@@ -79,7 +79,7 @@ LOSS_DECIMALS = 9
 
 @frozen
 class FigureThreshold:
-    """A limit of a figure that every fixture used must keep.
+    """A limit of a figure that every fixture in use must keep.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def may_be_used(
 ) -> NDArray[np.bool_]:
     """Return (N,) booleans: whether each fixture reaches every threshold and is fit for a workshop.
 
-    With ``with_unfit`` fixtures need not be fit.
+    With ``with_unfit`` unfit fixtures pass as well.
     """
     good = np.ones(len(table), np.bool_) if with_unfit else ~are_unfit(table.quality, tolerance)
     for one in thresholds:
@@ -189,9 +189,7 @@ def mirror_load(load: Load) -> Load:
 
 
 def renumber_segments(workpiece: Workpiece) -> dict[int, int]:
-    """Return by segment number the number that the segment has once the part is turned over, which reverses
-    its loops.
-    """
+    """Return the new number of each segment after the part is turned over, which reverses its loops."""
     out, first = dict[int, int](), 0
     for loop in workpiece.loops:
         out |= {first + k: first + len(loop) - 1 - k for k in range(len(loop))}
@@ -274,16 +272,16 @@ class Member:
     name : unique name of the part in the family.
     path : its file, "" where there is none.
     digest : SHA-256 of that file in hexadecimal, "" where there is none.
-    query : what was asked for it.
+    query : query for its fixtures.
     zero : its part zero.
     fixtures : number of its fixtures.
     patterns : number of patterns that hold it, a pattern and its half turn counted once.
     best : the best value of the figure of which losses are computed; NaN where it has no fixture.
     words : (P, W) the P patterns that hold it, in lexicographic order.
     loss : (P,) of each pattern.
-    number : (P,) index, from 0 in the list of all fixtures, of the best fixture that has each pattern.
-    turned : (P,) whether that fixture has the pattern only after half a turn of everything.
-    table : the P fixtures as they stand in their patterns: as listed, or after half a turn of everything.
+    number : (P,) index, from 0, of the best fixture with each pattern in the list of all fixtures.
+    turned : (P,) whether that fixture gets the pattern only by half a turn of everything.
+    table : the P fixtures in their patterns: as listed, or after half a turn of everything.
     figure : of which losses are computed.
     holds : how flat jaws hold the part in each of the P fixtures; empty with pegs.
     stop_ranges : where the tip of a work stop can stop the part in each of them; empty with pegs.
@@ -376,8 +374,8 @@ def count_distinct_patterns(words: IntArray, number: IntArray, turn: NDArray[np.
 def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, IntArray]:
     """Return (table, indices (N,)): the fixtures followed by their images under half a turn of everything.
 
-    The indices are those of each row's fixture in the given table. A fixture has an image where the half turn
-    leaves its arrangement as it is, no hole is blocked, and the image's angle is allowed.
+    The indices are those of each row's fixture in the given table. A fixture has an image if the half turn
+    keeps its arrangement, no hole is blocked, and the image's angle is allowed.
     """
     toolkit = query.toolkit
     tables, numbers = [table], [np.arange(len(table))]
@@ -400,14 +398,13 @@ def add_half_turns(table: FixtureTable, query: Query) -> tuple[FixtureTable, Int
 def are_at_allowed_angle(degrees: NDArray[np.float64], query: Query) -> NDArray[np.bool_]:
     """Return (N,) booleans: whether each angle in degrees lies in an allowed range of the query.
 
-    All are True where the query has no ranges.
+    All are True when the query has no ranges.
     """
     return np.asarray(lie_in_angle_ranges(degrees, query.restrictions.angles))
 
 
 def spill_to_disk(table: FixtureTable) -> FixtureTable:
-    """Return the table, or in place of a large one an equal table whose columns are mapped from a temporary
-    file.
+    """Return the table; for a large one, an equal table whose columns are mapped from a temporary file.
 
     Raises
     ------

@@ -173,7 +173,7 @@ def draw_setups(plan: FamilyPlan, figure: Figure, day: date, unit: Unit = MILLIM
 
     Parameters
     ----------
-    figure : of which losses are computed.
+    figure : the figure of which losses are computed.
     day : the date written on the sheets.
     """
     first = plan.setups[0].holdings[0].member.query.toolkit.carriers[0]
@@ -249,9 +249,9 @@ def list_holes(setup: SetUp) -> list[str]:
 
 
 def describe_heights(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
-    """Yield sentences on the heights at which carriers with heights of their own touch.
+    """Yield sentences on the heights at which carriers touch, for carriers with heights of their own.
 
-    Yields nothing where no part is a solid.
+    Yields nothing unless some part is a solid.
     """
     toolkit = setup.standing.member.query.toolkit
     if all(one.member.query.workpiece.solid is None for one in setup.holdings):
@@ -264,9 +264,9 @@ def describe_heights(setup: SetUp, lengths: LengthUnit) -> Iterator[str]:
 
 
 def describe_moves(setup: SetUp, before: SetUp | None) -> Iterator[str]:
-    """Yield a sentence on the pegs to take out and to place after the set-up ``before``.
+    """Yield a sentence on the pegs to remove and to place after the set-up ``before``.
 
-    Yields nothing for the first set-up, which has none before it.
+    Yields nothing for the first set-up, whose ``before`` is None.
     """
     if before is None:
         return
@@ -296,8 +296,8 @@ def draw_pegs_plan(scene: Scene, setup: SetUp, room: Box, lengths: LengthUnit) -
 def draw_parts(
     scene: Scene, benches: Sequence[tuple[Holding, BenchDrawing]], room: Box, titles: PageTitles
 ) -> None:
-    """Draw parts as they lie in a set-up, each in a cell, all to one scale; below them the table of what to
-    set for each.
+    """Draw the parts in their positions in a set-up, each in a cell, all to one scale. Below them draw the
+    table of what to set for each.
     """
     rows = [make_table_row(one, titles) for one, _ in benches]
     notes = [
@@ -413,8 +413,7 @@ def make_table_row(one: Holding, titles: PageTitles) -> list[str]:
 
 
 def list_notes(holdings: Sequence[Holding], lengths: LengthUnit) -> Iterator[str]:
-    """Yield the notes below the table: on part zero, on the signs, and on parts whose pegs stand in other
-    columns.
+    """Yield the notes below the table: on part zero, on signs, and on parts whose pegs are in other columns.
     """
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit

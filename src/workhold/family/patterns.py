@@ -1,9 +1,9 @@
 """The pattern of each fixture of a table, and a fixture moved onto the pegs of a set-up.
 
-A pattern is written as packed whole numbers that are equal for equal patterns. A move is by whole lattice
-steps or half a turn. What is moved stays a fixture: it touches the same faces with the same forces. The half
-turn of a vise changes which jaw stands still, and with it the location error. So a fixture and its half turn
-are one fixture in a list, but not the same to a part that is machined.
+A pattern is written as packed whole numbers that are equal for equal patterns. Fixtures are moved by whole
+lattice steps or half a turn. A moved fixture touches the same faces with the same forces. The half turn of a
+vise changes which jaw stands still, and with it the location error. So a list counts a fixture and its half
+turn as one fixture, but they locate a machined part differently.
 """
 
 from __future__ import annotations
@@ -45,9 +45,10 @@ NO_PLACE = 1 << 40
 
 
 def group_carriers_by_columns(toolkit: Toolkit) -> list[int]:
-    """Return a group number for each carrier; carriers with the same number shift by columns together.
+    """Return a group number for each carrier; carriers with the same number must be shifted by the same
+    columns.
 
-    The number is 0, or for a sliding jaw a number of its own.
+    Each sliding jaw is a group by itself; all other carriers are in group 0.
     """
     slides = [carrier.has_lattice and carrier.travel is not None for carrier in toolkit.carriers]
     return [number if own else 0 for number, own in enumerate(slides)]
@@ -56,8 +57,8 @@ def group_carriers_by_columns(toolkit: Toolkit) -> list[int]:
 def map_carriers_by_half_turn(toolkit: Toolkit, arrangement: int) -> tuple[int, ...] | None:
     """Return for each carrier the index of the carrier whose place it takes after half a turn of everything.
 
-    ``arrangement`` is the arrangement's index. An entry is negative for a carrier without pegs that takes no
-    such place. Returns None where the half turn changes the arrangement.
+    ``arrangement`` is the arrangement's index. An entry is negative for a carrier without pegs that has no
+    counterpart. Returns None if the half turn changes the arrangement.
     """
     places, one = toolkit.half_turned, toolkit.arrangements[arrangement]
     if places is None:
@@ -140,7 +141,7 @@ def shift_fixture(one: FixtureTable, toolkit: Toolkit, columns: dict[int, int], 
     """Return a fixture (a table of one row) moved by whole columns and rows.
 
     ``columns`` gives the columns by group of carriers, see :func:`group_carriers_by_columns`; the part moves
-    with group 0. ``rows`` is the same for all.
+    with group 0. All groups are shifted by the same ``rows``.
     """
     carriers = toolkit.find_peg_carriers(one.arrangement)[0]
     groups, pitch = group_carriers_by_columns(toolkit), toolkit.carriers[0].pitch
@@ -161,7 +162,7 @@ def rotate_fixtures_by_half_turn(table: FixtureTable, toolkit: Toolkit) -> Fixtu
     """Return the fixtures after everything is turned by half a turn about z.
 
     All must be of one arrangement that the half turn leaves as it is. The pegs take up the same range of rows
-    as before, in reverse, and mirrored columns. Figures are those before the turn.
+    as before, in reverse, and mirrored columns. Figures are not recomputed.
     """
     if not len(table):
         return table
@@ -242,8 +243,8 @@ def list_holes(one: FixtureTable, toolkit: Toolkit) -> list[Hole]:
 def move_onto_pattern(one: FixtureTable, target: FixtureTable, toolkit: Toolkit) -> FixtureTable | None:
     """Return a fixture moved into the holes of ``target``, a fixture of the same pattern.
 
-    Both are tables of one row. Returns None where the holes cannot be reached, or where the opening of the
-    jaws would be out of range.
+    Both are tables of one row. Returns None if the fixture cannot be moved into these holes or the jaw
+    opening would be out of range.
     """
     mine, theirs, groups = (
         list_holes(one, toolkit),

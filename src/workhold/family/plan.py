@@ -1,10 +1,10 @@
-"""The plan at a point of the curve: its set-ups in order, and how every member lies in the one that holds it.
+"""The plan at a point of the curve: its set-ups in order, and the position of every member in its set-up.
 
-The order is that in which the fewest pegs are moved. A set-up may stand anywhere on the lattice where the
-toolkit has no end. Two set-ups one after the other share the pegs that stand in the same holes, and the rest
-is moved. Up to ``MOST_EXACT`` set-ups the order is the shortest path through all of them (Held & Karp,
-*A dynamic programming approach to sequencing problems*, 1962). With more, it goes from each to the nearest
-that is left. In a plain vise the parallels and the work stop take the place of pegs.
+The chosen order moves the fewest pegs. A set-up may be anywhere on the lattice where the toolkit has no end.
+Two consecutive set-ups share the pegs that are in the same holes; the others are moved. Up to ``MOST_EXACT``
+set-ups the order is the shortest path through all of them (Held & Karp, *A dynamic programming approach to
+sequencing problems*, 1962). With more, it goes from each to the nearest that is left. In a plain vise the
+parallels and the work stop take the place of pegs.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ class PlanStep:
     Parameters
     ----------
     setup : its index.
-    columns, rows : how far it is moved from where it stood.
-    moved : number of pegs to place because they did not stand there in the set-up before.
+    columns, rows : how far the set-up is shifted, in columns and rows.
+    moved : number of pegs to place, since the previous set-up has none in these holes.
     """
 
     setup: int
@@ -74,8 +74,8 @@ class PlanStep:
 def find_freedom(toolkit: Toolkit) -> SetUpFreedom:
     """Return whether set-ups of a toolkit may be moved by columns, and whether by rows.
 
-    They may where its plates have no end; by rows only where rows do not count from a wall and no hole is
-    blocked.
+    They may if its plates have no end. By rows they may only if, besides, rows are not counted from a wall
+    and no hole is blocked.
     """
     plates, is_counted = toolkit.plates, toolkit.datum.fixes_rows
     return SetUpFreedom(
@@ -93,8 +93,8 @@ def move_holes(holes: Holes, columns: int, rows: int) -> list[tuple[int, int, in
 
 
 def list_moves(before: Holes, after: Holes, freedom: SetUpFreedom) -> Iterator[tuple[int, int]]:
-    """Yield (columns, rows): first (0, 0), then each move that brings a peg of ``after`` to a peg of
-    ``before``.
+    """Yield moves (columns, rows) of ``after``: first (0, 0), then each that brings one of its pegs into a
+    hole of ``before``.
 
     A move is 0 along directions in which set-ups may not be moved.
     """
@@ -105,8 +105,8 @@ def list_moves(before: Holes, after: Holes, freedom: SetUpFreedom) -> Iterator[t
 
 
 def find_cheapest_move(before: Holes, after: Holes, freedom: SetUpFreedom) -> tuple[int, int, int]:
-    """Return (pegs to place, columns, rows) of the move of ``after`` with the fewest pegs to place after
-    ``before``.
+    """Return (pegs to place, columns, rows) of the move of ``after`` that leaves the fewest pegs to place
+    after ``before``.
 
     Of equally good moves it is the shortest, then the first.
     """
@@ -186,13 +186,13 @@ class Holding:
     Parameters
     ----------
     member : the part.
-    number : of the fixture in the list of all of the part's fixtures, best first, from 1.
-    loss : of the fixture.
-    turned : whether the listed fixture lies here after half a turn of everything, so that the other jaw
-        stands still.
-    row : the fixture as it stands in the set-up, a table of one row.
-    in_place : whether its pegs stand in the holes of the set-up; False in a vise whose largest opening, or
-        smallest gap, needs other columns.
+    number : number of the fixture in the list of all the part's fixtures, best first, from 1.
+    loss : loss of the fixture.
+    turned : whether the listed fixture is used after half a turn of everything, so that the other jaw is the
+        fixed one.
+    row : the fixture as placed in the set-up, a table of one row.
+    in_place : whether its pegs are in the holes of the set-up; False when the vise's largest opening or
+        smallest gap forces other columns.
     hold : how flat jaws hold it; None with pegs.
     stop_range : where the tip of a work stop can stop it; None with pegs.
     """
@@ -208,7 +208,7 @@ class Holding:
 
     @property
     def fixture(self) -> Fixture:
-        """The fixture as it stands in the set-up."""
+        """The fixture as placed in the set-up."""
         query = self.member.query
         return evolve(make_fixture_of_row(self.row, query.toolkit, 0, query.workpiece), hold=self.hold)
 
@@ -228,9 +228,9 @@ class SetUp:
     Parameters
     ----------
     pattern : its number among all patterns of the family, in the order of their identities.
-    holdings : at least one, in the order of the family.
-    moved : number of pegs to place because they did not stand there in the set-up before; in the first
-        set-up, of all pegs. In a plain vise it counts the parallels and the work stop.
+    holdings : the members held here, at least one, in the order of the family.
+    moved : number of pegs to place, since the previous set-up has none in these holes; in the first set-up,
+        the number of all pegs. In a plain vise it counts the parallels and the work stop.
     jaws : parallels and work stop of a plain vise; None with pegs.
     """
 
@@ -241,17 +241,17 @@ class SetUp:
 
     @property
     def standing(self) -> Holding:
-        """The first holding whose pegs stand in the holes of the set-up."""
+        """The first holding whose pegs are in the holes of the set-up."""
         return next(one for one in self.holdings if one.in_place)
 
 
 @frozen(eq=False)
 class FamilyPlan:
-    """A plan.
+    """The plan at one point of a family's curve.
 
     Parameters
     ----------
-    point : of the curve.
+    point : the point of the curve.
     setups : in the order in which the fewest pegs are moved.
     """
 
@@ -260,7 +260,7 @@ class FamilyPlan:
 
     @property
     def moved(self) -> int:
-        """The sum over all set-ups, except the first, of the pegs to place."""
+        """Number of pegs to place, summed over all set-ups but the first."""
         return sum(setup.moved for setup in self.setups[1:])
 
 
@@ -340,10 +340,10 @@ def find_stop_level(setups: Sequence[SetUp], tried: float) -> float | None:
 
 
 def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
-    """Return the holdings of one pattern, moved into the holes of that holding whose holes most of them can
-    share.
+    """Return the holdings of one pattern, moved into common holes.
 
-    A holding that cannot be moved there stays where it is, with ``in_place`` False.
+    The holes are those of the holding that most of the others can join. A holding that cannot be moved there
+    keeps its place, with ``in_place`` False.
     """
     best: list[Holding] = []
     for target in holdings:
@@ -361,7 +361,7 @@ def align_holdings(holdings: Sequence[Holding]) -> tuple[Holding, ...]:
 
 
 def sort_in_best_order(setups: Sequence[SetUp]) -> tuple[SetUp, ...]:
-    """Return the set-ups in the order that needs the fewest pegs to be placed, each moved to where this order
+    """Return the set-ups in the order that needs the fewest pegs to be placed, each shifted as this order
     needs it.
 
     In a plain vise it is the order with the fewest changes of parallels and work stop.

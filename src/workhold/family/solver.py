@@ -1,4 +1,4 @@
-"""A choice of things of least total cost, found by the solver HiGHS (branch and bound), which comes with
+"""Choices of least total cost under linear constraints, found by the solver HiGHS (branch and bound) of
 SciPy.
 
 References
@@ -42,11 +42,11 @@ def load_solver() -> None:
 def find_best_choice(
     costs: NDArray[np.float64], constraint: Any, seconds: float | None
 ) -> tuple[list[int] | None, float | None]:
-    """Return (indices of the things chosen for least total cost, lower bound of that cost).
+    """Return (indices of the chosen items, lower bound of the total cost) for a choice of least total cost.
 
-    ``costs`` (N,) has the cost of each thing. ``constraint`` is one of SciPy on N variables, 1 for a thing
-    that is chosen, else 0. After ``seconds`` (None: no limit) the choice is the best one found. Either result
-    is None where it is not known.
+    ``costs`` (N,) has the cost of each item. ``constraint`` is a SciPy constraint on N variables, which are 1
+    for a chosen item, else 0. After ``seconds`` (None: no limit) the choice is the best one found. Either
+    result is None if it is not known.
     """
     from scipy.optimize import Bounds, milp
 

@@ -1,10 +1,10 @@
 """Reading of foreign data in a child process, for libraries that a damaged file can crash.
 
-Whatever happens to the child, the parent goes on: a crash, a time-out and a lack of memory each become one
+The parent survives whatever happens to the child: a crash, a time-out and a lack of memory each become one
 sentence. The process is started through pipes rather than by ``multiprocessing``, so that it works from any
-script, and its answer is JSON, which cannot execute anything. It ends with its parent, also where that is
-killed, and where a library ignores signals. Where processes can be forked, one that has loaded the library is
-kept ready (``files.fork_server``), since that takes longer than to read most files.
+script, and its answer is JSON, which cannot execute anything. It ends with its parent, even if the parent is
+killed or a library ignores signals. On systems that can fork, a process that has loaded the library is kept
+ready (``files.fork_server``), since loading takes longer than reading most files.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def run_apart(module: str, content: bytes, options: Mapping[str, Any], what: str
 
 
 def start_process(module: str) -> ForkedProcess | subprocess.Popen[bytes]:
-    """Return a child process that answers one order for a module's work."""
+    """Return a child process that executes one order of work for a module."""
     process = fork_from_server(module, make_python_command(SERVE)) if CAN_FORK else None
     return process or subprocess.Popen(
         make_python_command(ANSWER), stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
@@ -195,7 +195,7 @@ def load_prepared_module(name: str) -> ModuleType:
 
 
 def end_with_starter() -> None:
-    """Make the system end this process when its parent has closed the pipe to it; do nothing on Windows."""
+    """Make the system end this process when its parent closes the pipe to it; do nothing on Windows."""
     if sys.platform == "win32":
         return
     import fcntl
@@ -206,8 +206,8 @@ def end_with_starter() -> None:
 
 
 def limit_memory(size: int) -> None:
-    """Limit the process's address space to ``size`` bytes, and write no core
-    dumps; do nothing where the system cannot.
+    """Limit the process's address space to ``size`` bytes, and write no core dumps; do nothing on systems
+    without such a limit.
     """
     try:
         import resource
@@ -220,8 +220,8 @@ def limit_memory(size: int) -> None:
 
 
 def limit_processor(seconds: float) -> None:
-    """Make the system end this process after ``seconds`` more of processor time; do nothing where the system
-    cannot.
+    """Make the system end this process after ``seconds`` more of processor time; do nothing on systems
+    without such a limit.
     """
     try:
         import resource

@@ -1,9 +1,9 @@
 """Limits of the work that a file may cause its reader: bytes, elements, depth and processor time, for every
 kind.
 
-A file comes from anywhere, and the cost of reading it must not depend on how it is written. Every reader
-takes its limits from the table here, spends from a :class:`Budget`, and refuses a file that asks for more.
-The manual's page of limits lists the same table.
+Files come from unknown sources, and the cost of reading one must stay limited however it is written. Every
+reader takes its limits from the table here, spends from a :class:`Budget`, and refuses a file that asks for
+more. The manual's page of limits lists the same table.
 
 Glossary
 --------
@@ -33,7 +33,8 @@ STEP_SECONDS, STEP_SECONDS_PER_MILLION = 12.0, 2.0
 class OverBudgetError(InputError):
     """Raised for a file that asks for more work than its reader may spend.
 
-    Reading ends with it; only level faces of a solid that take too much are left out, and the rest is read.
+    It ends the reading, with one exception: level faces of a solid that take too much work are left out, and
+    the rest is read.
     """
 
     @staticmethod
@@ -48,15 +49,15 @@ class FileLimits:
 
     Parameters
     ----------
-    what : words for such a file in messages such as "more than the 2 rows that a table may have", here "a
-        table".
+    what : phrase for such a file in messages; it is "a table" in "more than the 2 rows that a table may
+        have".
     most_bytes : None where a file is read in blocks and may have any size.
     most_elements : number of elements the reader may visit, repeated ones counted each time; None for no
         limit.
     elements : word for these elements in messages, such as "rows".
     deepest : number of elements that may lie inside each other; None for no limit.
     seconds, seconds_per_million : processor time allowed is ``seconds`` plus ``seconds_per_million`` for
-        every million bytes; None for no limit, where the work is in proportion to the bytes.
+        every million bytes; None for no limit, when the work is proportional to the bytes.
     remedy : advice for a file that asks for more.
     """
 

@@ -1,9 +1,9 @@
-"""A server process that forks one process for each piece of work, because loading a large library takes
-longest.
+"""A server process that forks one process per piece of work, because loading a large library takes longer
+than the work.
 
 There is one server for all work of the process that starts it; it loads what a piece of work needs before it
-forks. It ends with its starter, and when nothing was asked of it for a while. It exists on Linux only:
-elsewhere a library may not work in a process that was forked.
+forks. It ends with the process that started it, and after some idle time. It exists on Linux only: elsewhere
+a library may not work in a forked process.
 
 Each piece of work has a process of its own, as with :class:`subprocess.Popen`, and a second one that waits
 for its end and reports its exit code. Unlike ``multiprocessing``'s fork server it never runs the main module
@@ -79,13 +79,14 @@ class ForkedProcess:
 
 @frozen(eq=False)
 class ForkServer:
-    """A running server, and the circumstances in which it was started.
+    """A running server, with the settings under which it was started.
 
     Parameters
     ----------
     process : the server.
     line : socket through which it takes orders.
-    surroundings : process number of its starter, the command, and the environment variables at the start.
+    surroundings : process number of the process that started it, the command, and the environment variables
+        at the start.
     """
 
     process: subprocess.Popen[bytes]
@@ -201,10 +202,10 @@ def serve(load: Callable[[str], object], work: Callable[[], None]) -> None:
 
 
 def watch(work: Callable[[], None], order: int, answer: int, status: int) -> None:
-    """Fork the process that does the work, and report on it: its number, and when it
-    ends its exit code, each on a line of ``status``.
+    """Fork the process that does the work, and report its number and, when it ends, its exit code, each on a
+    line of ``status``.
 
-    Never return.
+    Never returns.
 
     Parameters
     ----------

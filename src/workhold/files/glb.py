@@ -1,11 +1,11 @@
 """GLB files of fixtures: glTF 2.0 in its binary form (Khronos Group, "glTF 2.0 Specification", section 4.4).
 
 Each body is a node with its own mesh, named as the body is, below one node for the whole fixture. Bodies of
-one kind share a material. Lengths are metres, and y is up. What a viewer may do with a body stands in the
-node's ``extras``: its ``kind``, and where it slides ``opens``, the direction in which it opens.
+one kind share a material. Lengths are metres, and y is up. The node's ``extras`` have data for viewers: the
+body's ``kind`` and, for a sliding body, ``opens``, the direction in which it opens.
 
 In a mesh, arcs are chords, and each slab is a closed surface of its own: two caps and the walls between them.
-A vertex stands in a mesh once for each normal that it has, so that edges are sharp and round walls smooth.
+A vertex occurs once for each of its normals, so that edges look sharp and round walls smooth.
 """
 
 from __future__ import annotations

@@ -134,7 +134,9 @@ TYPES: Mapping[Form, Any] = {
 
 
 class ToolkitForm(BaseModel):
-    """The entries that the file of any toolkit may have; values are checked by the toolkit and the dowel."""
+    """The entries that the file of any toolkit may have; the constructors of the toolkit and the dowel check
+    the values.
+    """
 
     model_config = ConfigDict(strict=True, extra="forbid")
 
@@ -295,7 +297,7 @@ class LoadTable(BaseModel):
 
 
 class LoadsFile(BaseModel):
-    """What a cutter, a drill or a hand does to the part."""
+    """The loads of a cutter, a drill or a hand on the part."""
 
     model_config = ConfigDict(extra="forbid")
 

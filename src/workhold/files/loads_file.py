@@ -4,7 +4,7 @@ A file is TOML, or JSON if its name ends in .json, with a table for each load. W
 and moments, positive counter-clockwise, in N mm. Other units are kN, lbf, N.m and lbf.in. Directions are in
 degrees in the part's frame; a force without a direction may act in any::
 
-    unit = "mm"                 # of at and path: mm, cm, m or inch; if not given, what the caller says
+unit = "mm" # of at and path: mm, cm, m or inch; if not given, the caller's unit
 
     [[load]]
     name = "side milling"

@@ -1,5 +1,5 @@
-"""Questions that the readers of a part and of a program leave to the user, named the same for every
-interface.
+"""Questions that the readers of parts and programs leave to the user, with names that each interface replaces
+by its own.
 
 A sentence names a question by its mark, such as ``<axis>``. Where a part is read
 (``files.part.load.read_workpiece``) the mark is replaced by the caller's name of the question: an option of

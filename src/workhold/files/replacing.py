@@ -1,8 +1,8 @@
-"""Rules for replacing files: workhold's own earlier outputs may be replaced, nothing that is read.
+"""Rules for replacing files: workhold's own earlier outputs may be replaced, inputs never.
 
-One rule for the command, for Python and for programs that call either. A file that workhold has written is
-recognized by a mark in it and may be replaced; any other only where that is asked for. An input of an output
-is never replaced by it, under its own name or through links.
+The rules are the same for the command, for Python and for programs that call either. A file that workhold has
+written is recognized by a mark in it and may be replaced; any other file only if the caller asks for it. An
+output never replaces one of its own inputs, under its name or through links.
 """
 
 from __future__ import annotations

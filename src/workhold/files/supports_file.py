@@ -1,4 +1,4 @@
-"""Files of supports, ``workhold-supports/1``: read, whoever wrote them, and written whole or not at all."""
+"""Files of supports, ``workhold-supports/1``: read from any program, written whole or not at all."""
 
 from __future__ import annotations
 
@@ -203,8 +203,8 @@ def make_tip_surroundings_entry(request: SupportRequest) -> dict[str, Any]:
     """Return the entries of a request's tip margin and head radius, where these
     are unusual, and of the regions beside the faces.
 
-    The regions are what rises above the upper faces, and which parts of them hang, each with the height of
-    its face.
+    The regions are those that rise above the upper faces, and the hanging parts of these faces, each with the
+    height of its face.
     """
     entry: dict[str, Any] = {}
     if request.tip_margin != 0.0:

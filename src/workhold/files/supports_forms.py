@@ -52,7 +52,7 @@ class HeightsPart(FormPart):
 
 
 class PadsPart(FormPart):
-    """The supports' pads, and where they may stand."""
+    """The supports' pads, and their allowed places."""
 
     pad_radius: float
     pad_margin: float = 0.0
@@ -61,7 +61,7 @@ class PadsPart(FormPart):
 
 
 class TipPart(FormPart):
-    """The clamp on top, and where it may stand."""
+    """The clamp on top, and its allowed places."""
 
     tip_radius: float
     inside: float | None = None

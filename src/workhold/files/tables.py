@@ -91,7 +91,7 @@ class CsvRow:
 
 @define(eq=False)
 class CsvTable:
-    """A table, whose rows are read as they are asked for.
+    """A table whose rows are read one by one.
 
     Parameters
     ----------
@@ -99,8 +99,8 @@ class CsvTable:
     mark : the separator of cells.
     remark : matches a line that is a remark; None where there are none.
     budget : spent for each row.
-    at, line, number : where reading goes on: offset in the text, and number of the line there; and the number
-        of rows read so far.
+    at, line, number : position of the reader: offset in the text, number of the line there, and number of
+        rows read so far.
     names : names of the columns; "" for a column without a name, which has no cells.
     """
 
@@ -126,7 +126,7 @@ class CsvTable:
         return f"{words}, column {column + 1}" + (f" ({name[:40]})" if name else "")
 
     def iterate_rows(self) -> Iterator[CsvRow]:
-        """Yield the rows that have a cell; a second call goes on after the last row read.
+        """Yield the rows that have a cell; a second call continues after the last row read.
 
         Raises
         ------

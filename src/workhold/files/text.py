@@ -1,7 +1,7 @@
-"""Text files of a user's, JSON and TOML, read whole within a limit of size.
+"""Users' text files, JSON and TOML, read whole within a limit of size.
 
-Two things that Python's readers accept are refused. One is a key that is given twice, of which the last would
-count. The other is a whole number too large for a float.
+Two things that Python's readers accept are refused. One is a repeated key, for which Python silently takes
+the last value. The other is a whole number too large for a float.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
-"""Toolkits described in TOML: presets of the program's own, and files of the user's.
+"""Toolkits described in TOML: the program's presets, and users' files.
 
 All lengths come out in mm.
 
-Each preset in ``data/toolkits`` says where its figures are from. A preset of a vise is a plate on each jaw,
-as in the paper. No vise that comes with a lattice of dowel holes on both jaws is known to us. How many
-columns a jaw has is for its owner to say; a preset's number is only a usual one. Dowel pins of the standards
-are looked up by nominal diameter; their figures and sources are in ``data/dowels.toml``.
+Each preset in ``data/toolkits`` names the source of its figures. A preset of a vise is a plate on each jaw,
+as in the paper. No vise sold with a lattice of dowel holes on both jaws is known to us. Only its owner knows
+how many columns a jaw has; a preset's number is only a typical one. Dowel pins of the standards are looked up
+by nominal diameter; their figures and sources are in ``data/dowels.toml``.
 
 Glossary
 --------
@@ -65,7 +65,7 @@ class DowelSeries:
     ----------
     name : the standard, and its tolerance class where it has several.
     unit : unit in which the standard gives its sizes.
-    source : text on where the figures are from.
+    source : text that names the source of the figures.
     sizes : by increasing diameter, in mm.
     """
 

@@ -1,4 +1,4 @@
-"""What parts are made of: stiffness and density, each with its source."""
+"""Materials of parts: stiffness, density and strength, each with its source."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ class ElasticMaterial:
     poisson : Poisson's ratio, from 0 to below 0.5.
     density : in kg/m³.
     source : where the numbers are taken from.
-    strength : von Mises' stress in MPa from which on it yields, or breaks where it is brittle; None where not known.
-    strength_source : what this strength is of, and where it is taken from.
+    strength : von Mises stress in MPa at which the material yields or, if brittle, breaks; None when not
+        known.
+    strength_source : the alloy and condition that the strength belongs to, and its source.
     """
 
     name: str
@@ -142,14 +143,15 @@ MATERIALS = {
 
 
 def find_material(name: str) -> ElasticMaterial:
-    """Return the material of a name, or one made from "E in MPa,Poisson's ratio", such as "69000,0.33".
+    """Return the material with a name, or one made from numbers: "E in MPa,Poisson's ratio", such as
+    "69000,0.33".
 
     A third number is its yield strength in MPa, as in "69000,0.33,276".
 
     Raises
     ------
     InputError
-        For a name that is not known, and numbers that cannot be.
+        For an unknown name and for impossible numbers.
 
     Examples
     --------

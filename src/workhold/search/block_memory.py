@@ -1,4 +1,4 @@
-"""Buffers that the kernels of a search write to, a set of its own for each thread."""
+"""Buffers that the kernels of a search write to; each thread has its own set."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class BlockMemory(local):
         self.renew()
 
     def renew(self) -> None:
-        """Replace the buffers by new ones of the present sizes; their contents are lost."""
+        """Replace the buffers by new ones of the current sizes; their contents are lost."""
         self.space: BlockSpace = make_block_space(self.records, self.pieces, self.members)
 
     def run_kernel(
@@ -49,8 +49,8 @@ class BlockMemory(local):
         kernel : called as ``kernel(members, *given, stats, space)``; returns the number of records, or a
             negative code where the buffers are too small.
         members : (M,) indices of curves.
-        stats : (5,) counts that the kernel adds to. What a run without enough room has added is taken back, except
-            the stop flag.
+        stats : (5,) counts that the kernel adds to. Counts added by a run without enough room are subtracted
+            again, except the stop flag.
         given : the kernel's other arguments.
         """
         if len(members) > self.members:

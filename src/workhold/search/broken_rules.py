@@ -2,8 +2,8 @@
 
 For every simultaneous contact the first rule that it breaks is found. The rules are tested in the order in
 which a person would test them: first the user's restrictions, then whether four pegs can touch at all,
-contact margin, smallest gap, closure, clamping, and the place on the carriers. The counts are of contacts in
-floating-point arithmetic; the proof that there is no fixture is the search's.
+contact margin, smallest gap, closure, clamping, and the place on the carriers. The contacts are counted in
+floating-point arithmetic; the proof that there is no fixture comes from the search.
 """
 
 from __future__ import annotations
@@ -58,21 +58,21 @@ SECOND_CLAMP = "a second clamp that holds the part together with the first, and 
 
 
 def drop_removals_of_nothing(removals: Iterable[RuleRemoval]) -> tuple[RuleRemoval, ...]:
-    """Return, in the same order, the removals of those rules that were tested on at least one contact."""
+    """Return, in the same order, the removals by those rules that were tested on at least one contact."""
     return tuple(removal for removal in removals if removal.before > 0)
 
 
 @frozen
 class RuleRemovals:
-    """Number of contacts that each rule takes away, one rule after the other.
+    """Number of contacts that the rules remove, one rule after the other.
 
     Parameters
     ----------
-    first : how many contacts there are before any rule.
-    removals : how many contacts were left before and after each rule, in the order of the rules; only rules
-        that were tested on at least one contact.
-    nearest : the contact that comes nearest to being a fixture, and why it is not a fixture; None where no such
-        contact is known.
+    first : number of contacts before any rule.
+    removals : number of contacts before and after each rule, in the order of the rules; only rules that were
+        tested on at least one contact.
+    nearest : the contact that comes nearest to being a fixture, and why it is not a fixture; None where no
+        such contact is known.
     """
 
     first: int
@@ -119,11 +119,12 @@ class ContactSets:
     Parameters
     ----------
     candidates : the contacts as candidates for fixtures.
-    null : (N, 4) null vector of the four contacts' wrenches. Its entries have absolute values that sum to 1.
-        Of its two signs, the one with the larger smallest entry is taken.
-    margin : (N,) smallest entry of ``null``; -1.0 where the wrenches do not span the space.
+    null : (N, 4) null vector of the four contacts' wrenches. The absolute values of its entries sum to 1. Its
+        sign is chosen so that its smallest entry is as large as possible.
+    margin : (N,) smallest entry of ``null``; -1.0 if the wrenches do not span the space.
     clamping : (N,) force with which the carriers press the part between them, for the peg forces ``null``.
-    end_distance : (N,) smallest distance in mm to the end of a feature, as the contact margin counts it.
+    end_distance : (N,) smallest distance in mm of a contact from the end of its feature, as the contact
+        margin defines it.
     """
 
     candidates: CandidateFixtures
@@ -139,17 +140,16 @@ class ContactSets:
 
 
 def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: bool) -> RuleRemovals:
-    """Return how many simultaneous contacts there are without restrictions, and how many each rule takes
-    away.
+    """Return the number of simultaneous contacts without restrictions, and the number that each rule removes.
 
-    Where a rule leaves no contact, the result also has the contact that is nearest to being a fixture.
+    If a rule leaves no contact, the result also has the contact that is nearest to being a fixture.
 
     Parameters
     ----------
     threads : None for one on each processor.
     unit : unit of lengths in the sentence about the nearest miss.
     alone : whether one clamp holds the part. If False, two are needed: the contacts are those of three
-        locators and one clamp, the rule :data:`SECOND_CLAMP` takes all of them away, and there is no nearest
+        locators and one clamp, the rule :data:`SECOND_CLAMP` removes all of them, and there is no nearest
         miss.
     """
     contacts = find_all_contacts(problem, threads)
@@ -169,7 +169,7 @@ def count_removals(problem: Problem, threads: int | None, unit: Unit, alone: boo
 
 
 def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
-    """Return every set of four simultaneous contacts of a problem, each once, whether or not it keeps the
+    """Return every set of four simultaneous contacts of a problem, each once, whether or not it satisfies the
     rules.
 
     The search uses a contact margin of 0, and lists at most :data:`MOST_LISTED` sets per block of work.
@@ -202,11 +202,12 @@ def find_all_contacts(problem: Problem, threads: int | None) -> ContactSets:
 
 
 def select_facing_right(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
-    """Return the contact sets without those that repeat another set with the two carriers' pegs exchanged.
+    """Return the contact sets, each once: two sets may differ only by exchanging the pegs of the two
+    carriers.
 
     ``swapped`` is the number of standing pegs with which the two carriers may be exchanged. Each set with
-    that many standing pegs is found twice. The one is kept whose moving pegs are farther in +x on average;
-    with equal x, the one whose moving pegs are lower in y.
+    that many standing pegs is found twice. Of the two, the one whose moving pegs are farther in +x on average
+    is kept; with equal x, the one whose moving pegs are lower in y.
     """
     across, upward = rotate_vectors(c.point[..., 0], c.point[..., 1], c.theta[:, None])
     right, lower = (v[:, 2:].sum(axis=1) - v[:, :2].sum(axis=1) for v in (across, -upward))
@@ -216,15 +217,14 @@ def select_facing_right(c: CandidateFixtures, swapped: int) -> CandidateFixtures
 def count_restriction_removals(
     problem: Problem, threads: int | None, left: int
 ) -> tuple[int, list[RuleRemoval]]:
-    """Return (1) the number of simultaneous contacts without restrictions, and (2) what each restriction
-    removes.
+    """Return (the number of simultaneous contacts without restrictions, the removals by each restriction).
 
     The restrictions, in order: faces to avoid, keep-out zones, program, blocked holes and peg bodies, angles.
-    Restrictions that the query does not have are left out.
+    Only restrictions that the query has are listed.
 
     Parameters
     ----------
-    left : number of contacts that keep all restrictions.
+    left : number of contacts that satisfy all restrictions.
     """
     toolkit, asked = problem.toolkit, problem.restrictions
     holes = [limit for limit in toolkit.limits if limit.bounds == "holes"]
@@ -270,8 +270,8 @@ def list_rules(problem: Problem, unit: Unit) -> list[Rule]:
     """Return the rules from contact margin to exact test, in the order in which they are tested.
 
     Each rule is a triple: (1) its name for the user; (2) a function that returns a mask (N,), True for
-    contacts that keep the rule; (3) a function that takes contacts that all break the rule, and returns the
-    index of the nearest one and a sentence that says why it breaks the rule.
+    contacts that satisfy the rule; (3) a function that takes contacts that all break the rule, and returns
+    the index of the nearest one and a sentence that says why it breaks the rule.
     """
     margin, frame = problem.contact_margin, problem.frame
     out: list[Rule] = []
@@ -298,7 +298,7 @@ def list_rules(problem: Problem, unit: Unit) -> list[Rule]:
 
 
 def list_placing_rules(problem: Problem) -> list[Rule]:
-    """Return the rules about the place on the carriers, as :func:`list_rules` has them.
+    """Return the rules about the place on the carriers, in the form of :func:`list_rules`.
 
     They are: locators clear of the clamp, each limit of the toolkit, angles of the part. Each rule's test
     includes the rules before it. The angles come after the limits on the pegs' bodies.
@@ -333,9 +333,9 @@ def list_placing_rules(problem: Problem) -> list[Rule]:
 
 
 def list_fixture_rules(problem: Problem, unit: Unit) -> list[Rule]:
-    """Return the rules tested on each fixture by itself, as :func:`list_rules` has them.
+    """Return the rules tested on each fixture by itself, in the form of :func:`list_rules`.
 
-    They are the faces to touch and the largest location error; each only where the query gives it.
+    They are the faces to touch and the largest location error, each only if the query gives it.
     """
     query, out = problem.query, list[Rule]()
 
@@ -382,7 +382,8 @@ def keep_no_contact(contacts: ContactSets) -> BoolArray:
 
 
 def find_miss_of_margin(margin: float, unit: Unit, c: ContactSets) -> tuple[int, str]:
-    """Return the index of the contact farthest inside the ends of its features, and why it breaks the margin.
+    """Return the index of the contact farthest from the ends of its features, and a sentence that says why it
+    breaks the margin.
 
     ``margin`` is the contact margin in mm, ``unit`` the unit of lengths in the sentence.
     """
@@ -462,11 +463,11 @@ def make_nearest_miss(contacts: ContactSets, miss: tuple[int, str], problem: Pro
 
 
 def find_program_line_in_the_way(query: Query) -> int | None:
-    """Return the number of the program line whose tool is most in the way of the pegs.
+    """Return the number of the program line whose tool obstructs the pegs most.
 
     That is the line whose tool comes too near the longest part of the peg centres' loci. The carriers are
-    tried in order; the first with such a line counts. None where no line is in the way, without a program,
-    for toolkits that hold by friction, and where the query without the program is invalid.
+    tried in order; the first with such a line counts. None if no line obstructs pegs, without a program, for
+    toolkits that hold by friction, and if the query without the program is invalid.
     """
     if query.program is None or query.toolkit.holds_by_friction:
         return None
@@ -499,6 +500,6 @@ def describe_body_rule(query: Query) -> str:
 def describe_stroke_rule(query: Query, rule: str) -> str:
     """Return the name of the rule on a clamp's stroke, given as ``rule``.
 
-    The rule on the clamp's body is added where the query has a program that may hit it.
+    The rule on the clamp's body is added if the query has a program that may hit it.
     """
     return f"{rule}, {describe_body_rule(query)}" if has_body_to_pass(query) else rule

@@ -52,8 +52,8 @@ class SearchBlock:
 
     Parameters
     ----------
-    work : called with the limits that fixtures must keep to be of interest; returns records (N, 19), see
-        ``kernels.contact.record``.
+    work : function that takes the limits that fixtures must keep to be of interest, and returns records (N,
+        19), see ``kernels.contact.record``.
     cost : estimated time, in units common to all blocks.
     cells : number of cells of orientation that the block covers.
     start : orientation psi in radians at which its first cell begins.
@@ -138,7 +138,7 @@ def run_blocks(
     pool: Executor | None = None,
     needed: InterestLimits = ANYTHING,
 ) -> tuple[list[Records], list[SearchBlock]]:
-    """Run all blocks on threads; return (1) their records and (2) the blocks that were done.
+    """Run all blocks on threads; return (their records, the blocks that finished).
 
     Parameters
     ----------
@@ -149,15 +149,15 @@ def run_blocks(
         block ``LAG`` places later, so that what a block leaves out does not depend on the threads' speed.
         None to return the records, and to pass no limits to the blocks.
     look : called from this thread with the records of each block as it finishes, in any order.
-    stop : called once when the work is cancelled or given up, to make running blocks end soon with what they
-        have found.
+    stop : called once when the work is cancelled or given up; running blocks then end soon with their records
+        so far.
     pool : executor with ``threads`` threads; None to make one.
     needed : limits that fixtures must keep in the first blocks; not used without ``receive``.
 
     Returns
     -------
-    (list of the records (N, 19) of each block in the order of the blocks, stopped blocks included; the blocks
-    that came to their end, in the order in which they ended)
+    (list of the records (N, 19) of each block in the order of the blocks, stopped blocks included; the
+    finished blocks, in the order in which they finished)
     """
     total = sum(block.cost for block in blocks) or 1.0
     results: dict[int, Records] = {}
@@ -195,7 +195,7 @@ def iterate_finished_blocks(
     stop: Callable[[], None] | None,
     pool: Executor | None,
 ) -> Iterator[tuple[int, Records, bool]]:
-    """Yield (index of a block, its records, whether it came to its end) as each block finishes, in any order.
+    """Yield (index of a block, its records, whether it ran to its end) as each block ends, in any order.
 
     No block is begun once ``cancel`` is set; then ``stop`` is called once.
 

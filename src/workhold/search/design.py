@@ -118,12 +118,13 @@ def design(
     workpiece, toolkit, contact_margin, restrictions, tolerance, loads, best, jaw_force : see
         :class:`workhold.Query`.
     max_location_error, thickness : the same.
-    types : names of the arrangements to search. Those of a vise are "I" (two pegs on each jaw) and "II" (three
-        and one). None for all.
+    types : names of the arrangements to search. Those of a vise are "I" (two pegs on each jaw) and "II"
+        (three and one). None for all.
     rank_by : the query's ranking.
-    prefer : instead of a ranking, what is wanted most: "square", "strong", "precise" or "roomy".
+    prefer : instead of a ranking, the most important quality: "square", "strong", "precise" or "roomy".
     threads, progress, cancel, preview : see :func:`answer`.
-    further : any other field of :class:`workhold.Query`, such as ``seating``, ``opening``, ``listing`` or ``program``.
+    further : any other field of :class:`workhold.Query`, such as ``seating``, ``opening``, ``listing`` or
+        ``program``.
 
     Returns
     -------
@@ -133,8 +134,8 @@ def design(
     Raises
     ------
     InputError
-        Where :class:`workhold.model.query.Query` or :func:`answer` raises it; for a ranking and a preference
-        given together.
+        For invalid arguments of :class:`workhold.model.query.Query`, in the cases of :func:`answer`, and for
+        a ranking given together with a preference.
 
     Examples
     --------
@@ -182,10 +183,12 @@ def answer(
     threads : how many threads share the work; None for one on each processor. The result does not depend on
         it.
     progress : called from this thread as ``progress(fraction done, fixtures found so far)``.
-    cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
-    preview : called from this thread now and then with some fixtures found so far, as a result marked
-        incomplete; not in the first 0.3 s.
-    sink : takes the fixtures, which are then not held in memory all at once; the result comes without them.
+    cancel : when set, the search stops soon; the result is marked incomplete and has the fixtures found so
+        far.
+    preview : called from this thread at intervals, not in the first 0.3 s, with some fixtures found so far,
+        as a result marked incomplete.
+    sink : receives the fixtures in batches, so that memory never holds all of them; the returned result then
+        has none.
 
     Returns
     -------
@@ -196,8 +199,8 @@ def answer(
     Raises
     ------
     InputError
-        For faces that do not exist, a peg that fits nowhere along the part, restrictions that leave nothing
-        to touch, and an invalid number of threads.
+        For faces that do not exist, a peg too large to touch any face, restrictions that leave no face to
+        touch, and an invalid number of threads.
 
     Examples
     --------
@@ -246,8 +249,8 @@ def answer(
 
 
 def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
-    """Return whether a search is so large that first searching up to a limit of the location error saves
-    time.
+    """Return whether a query is so large that it is faster to search first within a limit of the location
+    error.
 
     Always False where one of the query's arrangements has fewer than three standing pegs.
     """
@@ -277,7 +280,7 @@ def find_best_fixtures(
 ) -> Result | None:
     """Return the best fixtures, by searches up to growing limits of the location error.
 
-    None where limits do not help, so that the caller must search everything. After ``cancel``, an incomplete
+    None if limits do not help; the caller must then search everything. After ``cancel``, an incomplete
     result.
     """
     is_paired = query.toolkit.travel_count > 1
@@ -371,7 +374,7 @@ def answer_one_direction(
 ) -> Result:
     """Return the answer to a query in a toolkit with one moving carrier, as :func:`answer` does.
 
-    ``is_part`` says that the toolkit is one of several directions of the clamp. The result then lists every
+    ``is_part`` tells that the toolkit is one of several directions of the clamp. The result then lists every
     fixture that may be among the best of all directions.
     """
     problem = Problem.from_query(query)
@@ -459,10 +462,11 @@ def explain_no_fixture(
 
 
 def blame_what_was_asked(reason: Note, problem: Problem, threads: int) -> Note:
-    """Return the reason why there is no fixture, with the query's requests named where they cause it.
+    """Return the reason why there is no fixture, changed to name the query's own requests if they are the
+    cause.
 
-    Only reasons that blame the shape of the part or the pitch are examined: the requests are named if without
-    them the part or the pitch would not be to blame. Other reasons come back unchanged.
+    A reason that blames the shape of the part or the pitch is tested without these requests. If the part or
+    the pitch is then no longer to blame, the requests are named. Other reasons are returned unchanged.
     """
     query, toolkit = problem.query, problem.toolkit
     if not isinstance(reason, NoFixture) or reason.stage not in STAGES[:2] or reason.line is not None:
@@ -487,12 +491,12 @@ HELD_SLACK = 1e-6
 
 @frozen
 class ToolkitOutcome:
-    """What one toolkit can do for a part.
+    """The result of one toolkit for a part.
 
     Parameters
     ----------
     name : name of the toolkit.
-    found : number of fixtures of each arrangement; empty for an impossible toolkit, and where they were not
+    found : number of fixtures of each arrangement; empty for an impossible toolkit, and if they were not
         counted.
     figures : figures of quality of the first fixture by key; empty when there is none.
     fit : whether the first fixture is fit for a workshop.
@@ -521,12 +525,13 @@ def explore(
 ) -> Iterator[ToolkitOutcome]:
     """Yield the outcome of each query, one toolkit after the other.
 
-    A query that is an InputError, or that raises one, yields an outcome with the error's text as reason. The
+    If a query is an InputError, or its search raises one, the outcome has the error's text as reason. The
     iteration ends early once ``cancel`` is set.
 
     Parameters
     ----------
-    queries : pairs of the toolkit's name and its query, or the error why there is no query.
+    queries : pairs of the toolkit's name and its query; instead of a query, the error that made it
+        impossible.
     cancel : when set, no further query is answered.
     """
     for name, query in queries:
@@ -559,8 +564,8 @@ def explore(
 def is_held_fit(hold: JawHold | StrappedHold) -> bool:
     """Return whether a hold by friction is fit for a workshop.
 
-    Two cases: (a) flat jaws: the hold is not unfit, and both jaws press all over; (b) straps: it is not
-    unfit, and the straps hold something.
+    The hold must not be marked as unfit. Besides, flat jaws must press over the whole contact, and straps
+    must hold the part.
     """
     if isinstance(hold, JawHold):
         return not hold.is_unfit and hold.full_contact
@@ -568,7 +573,8 @@ def is_held_fit(hold: JawHold | StrappedHold) -> bool:
 
 
 def measure_held_share(fixture: Fixture, workpiece: Workpiece) -> float:
-    """Return the share, 0 to 1, of the part's longer side that lies between the fixture's outermost contacts.
+    """Return the fraction, from 0 to 1, of the part's longer side that lies between the fixture's outermost
+    contacts.
 
     The longer side is that of the bounding box of the part as drawn.
     """
@@ -590,10 +596,9 @@ def choose_first_toolkit(
 ) -> ToolkitOutcome | None:
     """Return the outcome of the toolkit whose first fixture is the best; None when no toolkit has a fixture.
 
-    Fixtures fit for a workshop come first, then toolkits for which ``is_sold(name)`` is true. Two cases
-    follow: (a) with a ranking that begins with the warnings, fewer warnings, then more tenths of the part's
-    length between the contacts, then the other figures; (b) with any other ranking, first its figures, then
-    the length.
+    Fixtures fit for a workshop come first, then toolkits for which ``is_sold(name)`` is true. If the ranking
+    begins with the warnings, the order continues: fewer warnings, more tenths of the part's length between
+    the contacts, then the other figures. With any other ranking, its figures come first, then that length.
     """
     able = [item for item in explored if item.figures]
     if not able:

@@ -1,17 +1,16 @@
 """The best fixtures first: searches up to a limit of the location error that grows until enough are found.
 
-In the usual ranking a fixture that is fit for a workshop and has no warning surely comes before another whose
-effective location error is a tenth larger. So once as many such fixtures are known as are asked for, nothing
-with an error a tenth above theirs is among the best. Therefore fixtures with a small error are searched
-first.
+In the usual ranking a fit fixture without warnings comes before every fixture whose effective location error
+is a tenth larger. Once enough such fixtures are known, no fixture with an error a tenth above theirs can be
+among the best. Therefore fixtures with a small error are searched first.
 
 Three locators have a small error only far apart and on faces with different normals. So features are cut into
 short stretches, called spots, and the error of three locators on three spots is bounded
-(``kernels.contact.location_bounds``). Chords are made only between spots that two locators with a small
-error may touch. A limited search is a small part of the whole, and is done in the same way, with proof.
+(``kernels.contact.location_bounds``). Chords are made only between spots that two locators with a small error
+may touch. A limited search is a small part of the whole search and works in the same way, with proof.
 
-Angles other than the drawing's and its quarter turns increase the effective error by half. So at square
-angles the limit holds as it is; at others it is divided by 1.5, and often nothing is left there.
+The effective error is larger by half at angles other than the drawing's and its quarter turns. So the limit
+holds unchanged at square angles and is divided by 1.5 at others, where often no fixture is left.
 """
 
 from __future__ import annotations
@@ -94,12 +93,12 @@ def can_limit_errors(query: Query) -> bool:
 
 @frozen(eq=False)
 class ErrorLimit:
-    """A limit of the effective location error, and which contacts of locators it leaves to search.
+    """A limit of the effective location error, and the contacts of locators that it leaves to search.
 
     Parameters
     ----------
     precision : error bounds with the limit, as the kernels take them.
-    square : which pairs and triples of spots locators may touch, where the part lies square to the drawing.
+    square : pairs and triples of spots that locators may touch when the part lies square to the drawing.
     aslant : the same for all other angles.
     boxes : number of triples of spots that were looked at.
     ruled_out : number of the triples that the bound ruled out.
@@ -184,9 +183,7 @@ class LocatorSpots:
 
 
 def bound_location_errors(problem: Problem) -> Precision:
-    """Return the bounds of a problem's location errors as the kernels take them, without a limit (``most`` is
-    inf).
-    """
+    """Return the kernels' bounds of a problem's location errors, without a limit (``most`` is inf)."""
     points = find_outermost_points(problem)
     query, length = problem.query, problem.wrench_length
     angles = np.arange(DIRECTIONS) * (pi / DIRECTIONS)
@@ -238,7 +235,8 @@ def find_largest_distance(points: Array) -> float:
 
 
 def compute_contact_allowances(rows: Array, points: Array) -> Array:
-    """Return for each feature how much a shift of the contact changes the location error, at most, (F,).
+    """Return for each feature an upper bound of the change of the location error per shift of the contact,
+    (F,).
 
     The shift is in mm along a straight feature, in radians along an arc. ``rows`` are the kernel rows of F
     features; ``points`` (C, 2) are points of the silhouette in mm.
@@ -360,7 +358,7 @@ def bound_keys_beyond_limit(most: float, query: Query) -> OrderKeys:
 
 
 def choose_first_limit(spots: Sequence[LocatorSpots], query: Query) -> float:
-    """Return the first limit of the effective location error in mm, given the spots of each direction of the
+    """Return the first limit of the effective location error in mm, from the spots of each direction of the
     clamp.
     """
     return choose_limit_growth(query)[0] * min(one.least_middle_error for one in spots)
@@ -376,7 +374,7 @@ def choose_limit_growth(query: Query) -> tuple[float, float, int]:
 
 
 def is_enough(most: float, kept: OrderKeys, query: Query) -> bool:
-    """Return whether the best fixtures are surely among those with an effective error up to ``most`` mm.
+    """Return whether the best fixtures surely have an effective error up to ``most`` mm.
 
     ``kept`` are the ranking keys of the fixtures found up to that limit.
     """
@@ -405,8 +403,8 @@ def choose_next_limit(most: float, kept: OrderKeys, query: Query, number: int) -
 
 
 def find_factor(key: str | None) -> float:
-    """Return the factor by which a doubt multiplies the location error; 1.0 for None.
+    """Return the factor by which a drawback multiplies the location error; 1.0 for None.
 
-    ``key`` is the doubt's key in ``FACTORS``, such as "quarter_turn".
+    ``key`` is the drawback's key in ``FACTORS``, such as "quarter_turn".
     """
     return next((one.times for one in FACTORS if one.key == key), 1.0)

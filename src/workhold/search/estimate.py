@@ -1,10 +1,10 @@
 """An estimate of how many fixtures there are, from a part of the search.
 
 Cells of orientation are drawn with a probability that grows with the work in them (Horvitz and Thompson 1952,
-*A Generalization of Sampling Without Replacement From a Finite Universe*). A drawn cell is searched as
-always, and its fixtures are weighted by the inverse of its probability. Fixtures lie where there is work, so
-a few per cent of the work give the number within some tenths of it. The draw is systematic: the same query
-has the same estimate.
+*A Generalization of Sampling Without Replacement From a Finite Universe*). A drawn cell is searched as usual,
+and its fixtures are weighted by the inverse of its probability. The number of fixtures in a cell grows with
+its work, so a few per cent of the work give the total to within some ten per cent. The draw is systematic:
+the same query always has the same estimate.
 """
 
 from __future__ import annotations
@@ -63,9 +63,8 @@ BEGIN = 0.618
 def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -> int | None:
     """Return the estimated number of all fixtures of a query, whatever its ``best`` is.
 
-    None where they are surely few, and once ``cancel`` is set. None also for queries with a wall, with
-    friction, with seating, or with rules that are tested on each fixture by itself: their numbers are not
-    estimated.
+    None if they are surely few, or once ``cancel`` is set. None also for queries with a wall, with friction,
+    with seating, or with rules that are tested on each fixture by itself: their numbers are not estimated.
     """
     held_flat = WALL_END in query.toolkit.contacts or query.toolkit.holds_by_friction
     if held_flat or query.seating is not None or query.is_sifted:
@@ -81,11 +80,11 @@ def estimate_fixtures(query: Query, threads: int, cancel: Event | None = None) -
 def ask_for_best_where_many(
     query: Query, threads: int, cancel: Event | None = None
 ) -> tuple[Query, int | None]:
-    """Return (1) the query, or where it has too many fixtures, a query for the best; and (2) the estimated
-    number.
+    """Return (the query, the estimated number of fixtures); a query with too many fixtures is replaced by one
+    for the best.
 
-    With more than about :data:`MANY` fixtures the best :data:`LISTED` are asked for. The number is None where
-    the fixtures are few, where it cannot be estimated, and for a query that already asks for the best.
+    With more than about :data:`MANY` fixtures the best :data:`LISTED` are asked for. The number is None if
+    the fixtures are few, if it cannot be estimated, and for a query that already asks for the best.
     """
     if query.best is not None:
         return query, None
@@ -159,7 +158,7 @@ class FeatureStretches:
     Parameters
     ----------
     every : about one in ``every`` triples is chosen.
-    near : how the features are cut into stretches, and which triples of stretches are chosen.
+    near : the division of the features into stretches, and the chosen triples of stretches.
     numbers : (M,) a random number for each stretch.
     """
 
@@ -259,7 +258,7 @@ def estimate_listed(
 
 
 def thin_contacts(records: Array, problem: Problem, every: int) -> Array:
-    """Return the records (M, 19) of about one in ``every`` seats; of a chosen seat all records are kept.
+    """Return the records (M, 19) of about one in ``every`` seats. All records of a chosen seat are kept.
 
     A seat is the pose that three locators fix.
     """

@@ -1,7 +1,7 @@
-"""A set-up that somebody has already: every pose in which the part touches just these pegs and is held.
+"""Evaluation of a given set-up: every pose in which the part touches exactly these pegs and is held.
 
-The toolkit is reduced to the holes of the set-up, all its fixtures are searched, and those that stand in
-these holes are taken. So the evaluation of a set-up is as complete as any list.
+The toolkit is reduced to the holes of the set-up, all its fixtures are searched, and those in exactly these
+holes are taken. So the evaluation of a set-up is as complete as any list.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ CLAMP = "clamp "
 
 @frozen(repr=False)
 class Evaluation:
-    """How pegs in given holes hold a part.
+    """The fixtures of a part on pegs in given holes.
 
     Parameters
     ----------
-    holes : names of the holes, as they were given.
+    holes : names of the holes, as given by the user.
     result : the fixtures, one for each pose in which the pegs hold the part, best first. Its toolkit has no
         more holes than the set-up needs.
     reason : why there is no fixture, in a sentence; empty where there is one.
@@ -84,12 +84,12 @@ def evaluate(
 
     Parameters
     ----------
-    workpiece, toolkit : what is held, and in what; lengths in mm.
+    workpiece, toolkit : the part, and the toolkit that holds it; lengths in mm.
     holes : names of the holes of all pegs, as in ``peg.hole``, such as "L-A2" of a vise or "B3" of a plate.
         On a plate the hole of a clamp may be named as well, as "clamp E2"; otherwise the clamp may be bolted
-        anywhere. A set-up is the same where all its pegs stand equally many holes farther on.
+        anywhere. Moving all pegs by the same number of holes does not change a set-up.
     contact_margin, restrictions, tolerance, loads, jaw_force : see :class:`workhold.Query`.
-    threads : how many share the work; None for one on each processor.
+    threads : number of threads; None for one on each processor.
 
     Raises
     ------
@@ -188,7 +188,7 @@ class GivenSetUp:
 
     @property
     def has_blocked(self) -> bool:
-        """Whether holes of the toolkit can be blocked, as in a vise."""
+        """Whether holes of this kind of toolkit can be blocked, as in a vise."""
         return hasattr(self.toolkit, "blocked")
 
     def make_smallest_toolkit(self) -> Toolkit:
@@ -246,7 +246,7 @@ class GivenSetUp:
         return found
 
     def make_pattern(self, holes: Sequence[HoleSelection]) -> frozenset[tuple[str, int, int]]:
-        """Return the holes as a set of (carrier name, column, row), equal for two equal set-ups.
+        """Return the holes as a set of (carrier name, column, row); equal set-ups have equal sets.
 
         Where holes cannot be blocked (a plate), columns count from the set-up's lowest column, and rows from
         its lowest row, unless rows are counted from a wall.

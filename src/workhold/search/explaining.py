@@ -59,8 +59,8 @@ def count_removals_beside_wall(query: Query, alone: bool) -> RuleRemovals:
 
     Parameters
     ----------
-    alone : whether one clamp holds the part. If False, two are needed, the rule :data:`SECOND_CLAMP` takes
-        all pairs away, and there is no nearest miss.
+    alone : whether one clamp holds the part. If False, two are needed, the rule :data:`SECOND_CLAMP` removes
+        all pairs, and there is no nearest miss.
     """
     counts = list(count_left_by_rules(query, alone))
     before = first = counts[0][1]
@@ -76,8 +76,8 @@ def count_removals_beside_wall(query: Query, alone: bool) -> RuleRemovals:
 
 
 def count_left_by_rules(query: Query, alone: bool) -> Iterator[tuple[str, int]]:
-    """Yield (name of a rule, number of pairs that keep it and all
-    rules before it), in the order of the rules.
+    """Yield (name of a rule, number of pairs that satisfy it and all rules before it), in the order of the
+    rules.
 
     The first entry has an empty name and counts all pairs. ``alone`` as in
     :func:`count_removals_beside_wall`.
@@ -156,8 +156,8 @@ def count_examined(query: Query) -> int:
 
 
 def count_placed(query: Query) -> int:
-    """Return how many pairs beside a wall hold the part, have a place
-    in the toolkit, and keep the fixture rules.
+    """Return the number of pairs beside a wall that hold the part, have a place in the toolkit, and satisfy
+    the fixture rules.
 
     The fixture rules are the faces to touch and the largest location error.
     """
@@ -221,8 +221,8 @@ def explain(query: Query, threads: int | None = None, unit: Unit = MILLIMETRE) -
 
 
 def count_removals_between_jaws(query: Query) -> RuleRemovals:
-    """Return in how many ways a part can lie between flat jaws, and how
-    many of these ways each rule removes.
+    """Return the number of ways in which a part can lie between flat jaws, and the number that each rule
+    removes.
     """
     rules = Counter(one.rule for one in JawSearch(query).examine_all())
     first = left = sum(rules.values())
@@ -235,7 +235,7 @@ def count_removals_between_jaws(query: Query) -> RuleRemovals:
 
 
 def count_removals_of_seats(query: Query, threads: int | None) -> RuleRemovals:
-    """Return how many seats of three locators a plate has, and how many of these seats each rule removes."""
+    """Return the number of seats of three locators on a plate, and the number that each rule removes."""
     toolkit, asked = query.toolkit, query.restrictions
     bare = evolve(
         query,
@@ -269,9 +269,10 @@ def count_removals_of_seats(query: Query, threads: int | None) -> RuleRemovals:
 
 
 def count_seats(query: Query, threads: int | None) -> int:
-    """Return how many seats of three locators keep a query's rules, the largest location error included.
+    """Return the number of seats of three locators that satisfy a query's rules, the largest location error
+    included.
 
-    0 where the search refuses the query, as when nothing is left to touch.
+    0 if the search refuses the query, as when no face is left to touch.
     """
     try:
         return len(select_within_error(find_seats(query, choose_thread_count(threads)).table, query))
@@ -295,8 +296,8 @@ def explain_no_contacts(ways: Sequence[Query]) -> Note:
 def find_helpful_changes(query: Query, threads: int | None, unit: Unit) -> tuple[HelpfulChange, ...]:
     """Return changes of a query that lead to fixtures; the change with the most fixtures comes first.
 
-    All are single changes, except where no single change that drops a request helps: then the smallest
-    combination of such changes that was found is added.
+    All are single changes. Only if no single change that drops a request helps, the smallest combination of
+    such changes that was found is added.
     """
     out, lifts = [], list[QueryChange]()
     for change in list_changes(query, unit):
@@ -335,7 +336,8 @@ def answer_changed_query(
 def find_changes_together(
     query: Query, lifts: Sequence[QueryChange], threads: int | None
 ) -> Iterator[HelpfulChange]:
-    """Yield at most one change: one that drops several requests at once, as few as lead to fixtures.
+    """Yield at most one change: the drop of several requests at once, as few as possible, that leads to
+    fixtures.
 
     ``lifts`` are the changes that drop one request each. Nothing is yielded if dropping all of them gives no
     fixture.
@@ -365,10 +367,11 @@ def find_changes_together(
 
 
 def describe_nearest_turn(query: Query, result: Result) -> str:
-    """Return words on how many degrees outside the allowed angles the nearest fixture of a result is.
+    """Return words that say by how many degrees the nearest fixture of a result is outside the allowed
+    angles.
 
-    Only fixtures with the fewest warnings are considered. Empty where the query allows all angles, or where
-    the result was found with its angles kept.
+    Only fixtures with the fewest warnings are considered. Empty if the query allows all angles, or if the
+    result was found with the query's angles.
     """
     if not query.restrictions.angles or result.query.restrictions.angles:
         return ""
@@ -397,7 +400,7 @@ class QueryChange(NamedTuple):
     fields : new values of the toolkit's fields that the change sets; None if it sets none.
     rules : names of the requests that the change drops, see ``Query.asked``.
     change : makes the same change to any query, so that changes can be combined.
-    is_whole : whether the change drops its requests entirely, not in part.
+    is_whole : whether the change drops its requests entirely rather than in part.
     """
 
     words: str

@@ -1,7 +1,8 @@
-"""A part that lies flush on a wall: on which hull edges, how it lies there, and what a search counts there.
+"""A part that lies flush on a wall: its hull edges there, its features in the wall's frame, and the counts of
+a search.
 
-In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. What presses it
-there is a locator and a clamp (``search.wall_search``), or two pegs of a lattice that slides toward the wall
+In the wall's frame a part lies on a hull edge: u runs along it from its start, v up from it. A locator and a
+clamp press it there (``search.wall_search``), or two pegs of a lattice that slides toward the wall
 (``search.wall_shares``).
 """
 
@@ -110,7 +111,7 @@ class FlushSearch:
     Parameters
     ----------
     problem : the problem that is searched.
-    explains : whether to keep the pair that comes nearest to pressing the part.
+    explains : whether to keep the nearest miss: the pair that comes nearest to pressing the part.
     locators : number of contacts of locators found so far.
     examined : number of pairs of contacts so far.
     verified : number of these pairs that were proven to press the part.

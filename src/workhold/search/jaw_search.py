@@ -1,10 +1,10 @@
 """Every way to hold a part between two flat jaws: each hull edge on the fixed jaw, each height of parallels,
 each stop.
 
-The hull edge on the fixed jaw fixes the angle. The jaw that moves touches what is farthest from it: a hull
-edge that is parallel, or an arc's point, or a corner. What both touch, and where along the jaws it lies,
-follows in closed form; so the list is complete. A part without a hull edge, such as a disc, stands as it is
-drawn.
+The hull edge on the fixed jaw fixes the angle. The moving jaw touches the point or edge of the part that is
+farthest from the fixed one: a parallel hull edge, a point of an arc, or a corner. The contacts of both jaws
+and their places along the jaws follow in closed form; so the list is complete. A part without a hull edge,
+such as a disc, stands as it is drawn.
 
 Glossary
 --------
@@ -116,7 +116,7 @@ class JawTouch:
 
 @frozen(eq=False)
 class JawOutline:
-    """The outline of a part that the jaws meet, for one height of the jaws' top.
+    """The outline of a part at the heights of the jaws, for one height of the jaws' top.
 
     Parameters
     ----------
@@ -149,7 +149,7 @@ class JawOutline:
         return turns or [0.0]
 
     def find_band(self, number: int) -> Band | None:
-        """Return the heights (low, high) in mm at which a jaw may touch a face; None where it may not.
+        """Return the heights (low, high) in mm at which a jaw may touch a face; None if it may touch none.
 
         ``number`` is the face's index in ``segments``.
         """
@@ -312,9 +312,10 @@ class PartOnJaw:
 
 
 def select_gripped(touches: Sequence[JawTouch], top: float, least: float) -> list[JawTouch]:
-    """Return the touches cut to the heights 0 to ``top`` mm, without those then less than ``least`` mm high.
+    """Return the touches cut to the heights 0 to ``top`` mm. Those less than ``least`` mm high after that are
+    dropped.
 
-    Points are returned only where no stretch is left.
+    Points are returned only if no stretch is left.
     """
     cut = [evolve(one, band=(max(one.band[0], 0.0), min(one.band[1], top))) for one in touches]
     high = [one for one in cut if one.band[1] - one.band[0] >= least]
@@ -364,7 +365,7 @@ class ExaminedHold:
     position : place of the drawing's origin in the frame of the jaws, in mm.
     hold : how the jaws hold the part; None where a rule is broken before both jaws touch it.
     rule : key in :data:`RULES` of the first rule that is broken; None for a fixture.
-    near : where a tool of the program comes too near the vise; None where no tool does.
+    near : place where a tool of the program comes too near the vise; None if no tool does.
     """
 
     theta: float
@@ -464,7 +465,7 @@ class JawSearch:
         return evolve(found, rule=rule)
 
     def find_broken_rule(self, hold: JawHold, lying: PartOnJaw) -> str | None:
-        """Return the key in :data:`RULES` of the first broken rule; None where all are kept.
+        """Return the key in :data:`RULES` of the first broken rule; None if none is broken.
 
         The rules are tested in the order "opening", "push", "avoid", "touch".
         """
@@ -484,8 +485,9 @@ class JawSearch:
         return None
 
     def keep_clear(self, program: Program, one: ExaminedHold) -> ExaminedHold:
-        """Return an examined hold whose parallels stand clear of a program's tools, or with the rule
-        "program" broken where a tool comes too near the vise all the same.
+        """Return an examined hold whose parallels keep clear of a program's tools.
+
+        If a tool still comes too near the vise, the hold breaks the rule "program".
         """
         hold, pose = one.hold, one.pose
         assert hold is not None
@@ -555,8 +557,8 @@ class JawSearch:
 
     @property
     def first_cut(self) -> ProgramJawForce | None:
-        """The program's first cut as a need that no jaw force meets (its
-        force is None); None where nothing is cut.
+        """The program's first cut with the force None, for holds that no jaw force makes strong enough; None
+        if nothing is cut.
         """
         pieces, program = self.pieces, self.query.program
         if pieces is None or program is None or not len(pieces):
@@ -565,8 +567,8 @@ class JawSearch:
         return ProgramJawForce(None, int(program.moves.line[move]), int(program.moves.tool[move]), move)
 
     def compute_program_need(self, one: ExaminedHold, grip: FrictionHold) -> ProgramJawForce | None:
-        """Return the largest jaw force that the program's tools need, and
-        at which move; None without cutting forces.
+        """Return the largest jaw force that the program's tools need, with its move; None without cutting
+        forces.
         """
         pieces, query = self.pieces, self.query
         if pieces is None or query.program is None:
@@ -574,11 +576,10 @@ class JawSearch:
         return find_worst_move(grip, pieces, query.program, one.theta, one.position, query.safety_factor)
 
     def apply_loads(self, one: ExaminedHold) -> ExaminedHold:
-        """Return an examined hold with the jaw forces that the loads and
-        the program need, its pressure and warnings.
+        """Return an examined hold with the jaw forces that the loads and the program need, its pressure and
+        its warnings.
 
-        Where the jaws do not press all over what they touch, every needed force is None: no load counts as
-        held.
+        If the jaws do not press over their whole contact, every needed force is None: no load counts as held.
         """
         hold, loads = one.hold, self.query.loads
         assert hold is not None
@@ -746,8 +747,8 @@ def make_table(listed: Sequence[ExaminedHold]) -> FixtureTable:
 
 
 def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
-    """Return the number of holds, where holds that a rotation of the part
-    onto itself makes equal count once.
+    """Return the number of distinct holds. Holds that a rotation of the part onto itself makes equal count
+    once.
     """
     every = workpiece.as_finished.numbered
     turns = [
@@ -764,9 +765,9 @@ def count_distinct(found: Sequence[ExaminedHold], workpiece: Workpiece) -> int:
 def explain_no_fixture(rules: dict[str, int], near: Sequence[ToolNearVise], query: Query) -> Note:
     """Return the note that says why there is no fixture between flat jaws.
 
-    Two cases: (a) a program stands in the way: the note names what its tools run into, and the worst line;
-    (b) otherwise it names the last rule, in the order of :data:`RULES`, that a combination broke. ``rules``
-    counts combinations by the first rule they break, ``near`` are the places where tools come too near.
+    If a program is the obstacle, the note names the bodies that its tools hit, and the worst line. Otherwise
+    it names the last rule, in the order of :data:`RULES`, that a combination broke. ``rules`` counts
+    combinations by the first rule they break, ``near`` are the places where tools come too near.
     """
     jaws, program = query.toolkit.flat_jaws, query.program
     if near and jaws is not None and program is not None:

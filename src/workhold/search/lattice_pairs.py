@@ -1,15 +1,15 @@
-"""Two pegs of one lattice that touch a part flush on a wall: where they stand, and whether they press it.
+"""Two pegs of one lattice that touch a part flush on a wall: their places, and whether they press the part.
 
-On a hull edge the part's orientation and height are fixed. A lattice that slides toward the wall leaves two
-unknowns, its place along the wall and its distance. Each pair of pegs gives two equations. The first peg's
-centre lies on the offset curve of the face it touches. It also lies on the offset curve of the second peg's
-face, moved back by the step from the first peg's hole to the second's. So pairs are the crossings of one
-curve with another curve that is moved by a step of the lattice. Two lines have one crossing; a line and a
+On a hull edge the part's orientation and height are fixed. A lattice that slides toward the wall has two
+unknowns, its place along the wall and its distance from it. Each pair of pegs gives two equations. The first
+peg's centre lies on the offset curve of the face it touches. It also lies on the offset curve of the second
+peg's face, moved back by the step from the first peg's hole to the second's. So pairs are the crossings of
+one curve with another curve that is moved by a step of the lattice. Two lines have one crossing; a line and a
 circle, or two circles, have two.
 
 Where two curves have a common stretch (parallel lines, equal arcs about one centre) or only graze each other,
-both normals are parallel there. Then the wrenches of wall and pegs do not span the space, and nothing closes
-(``compute_pair_closure``).
+both normals are parallel there. Then the wrenches of wall and pegs do not span the space, and there is no
+closure (``compute_pair_closure``).
 
 Bounds of the error. Places in the wall's frame are exact to ``off`` mm and directions to ``turn`` radians
 (``PartOnWall``). The error of a crossing is ``off`` divided by the sine of the angle between both normals, as
@@ -69,7 +69,7 @@ class LatticePairs(RowArrays):
     feature : (N, 2) features touched by the first and the second peg. The first peg's hole has the lower
         column or, in the same column, the lower row.
     step : (N, 2) columns and rows from the first peg's hole to the second's.
-    branch : (N,) -1 or 1, which of two crossings it is; 1 for two lines.
+    branch : (N,) -1 or 1 for the first or second of two crossings; 1 for two lines.
     point : (N, 2, 2) centres of both pegs, in mm along the hull edge from its start and above it.
     normal : (N, 2, 2) outward unit normals of the part there.
     slack : (N,) distance in mm from the nearest end of a feature, for the peg where it is smaller; negative
@@ -334,8 +334,7 @@ def turn_by_quarter(vectors: Array) -> Array:
 def compute_pair_closure(
     pairs: LatticePairs, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, BoolArray, BoolArray]:
-    """Return (1) the pairs with their forces, (2) which pairs press
-    the part on the wall, (3) which are undecided.
+    """Return (the pairs with their forces, which pairs press the part on the wall, which are undecided).
 
     The last two are masks (N,) from double arithmetic. The formula, with lengths divided by the
     characteristic length: a and b are the normals of the part at the first and the second peg, m and M the
@@ -368,8 +367,8 @@ def compute_pair_closure(
 def select_pressed_pairs(
     pairs: LatticePairs, edge: int, lying: PartOnWall, problem: Problem
 ) -> tuple[LatticePairs, IntArray, int]:
-    """Return (1) the pairs that press the part, (2) indices of
-    undecided pairs, (3) how many took ball arithmetic.
+    """Return (the pairs that press the part, indices of undecided pairs, number of pairs that took ball
+    arithmetic).
 
     The indices refer to the ``pairs`` given. Places and forces come from ball arithmetic where double
     arithmetic is too coarse. ``edge`` is the index of the hull edge on the wall.

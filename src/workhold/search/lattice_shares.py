@@ -1,8 +1,8 @@
 """The search for two clamps on a lattice, in shares: the seats of one range of orientations after the other.
 
-Three locators alone fix the pose, and both clamps then follow in closed form. So the search of each direction
-proves contacts of three locators and one clamp, whether they close or not, and pairs of clamps are made of
-these. With ranges of orientation, only the seats of one range are in memory.
+Three locators alone fix the pose, and both clamps then follow in closed form. So for each direction of a
+clamp the search proves contacts of three locators and one clamp, whether or not they close. Pairs of clamps
+are then formed from these. With ranges of orientation, only the seats of one range are in memory.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class LatticeShares:
         """Yield the shares of a query with two clamps; the context owns the threads.
 
         With a limit, only seats whose location error is within it are searched, those at preferred angles
-        first. Without a limit, raises InputError where the work is too much.
+        first. Without a limit, raises InputError for too much work.
         """
         if limit is not None:
             first = list_preferred_angles(query)
@@ -138,7 +138,7 @@ class LatticeShares:
     def open_for_contacts(
         cls, searches: Sequence[ToolkitSearch], collector: ClampedSeats, threads: int, cancel: Event | None
     ) -> Iterator[LatticeShares]:
-        """Yield an object without shares of its own, which makes seats of contacts that the caller found.
+        """Yield an object without shares of its own, which forms seats from contacts that the caller found.
 
         The context owns the threads.
         """
@@ -151,10 +151,9 @@ class LatticeShares:
         return len(self.ranges)
 
     def search_share(self, share: int, progress: Progress | None) -> tuple[Iterator[Seats], bool]:
-        """Search one share; return (1) an iterator over its seats, and
-        (2) whether it was searched to its end.
+        """Search one share; return (an iterator over its seats, whether it was searched to its end).
 
-        The seats come in one batch, or in several where only the best are asked for. There are none where a
+        The seats come in one batch, or in several where only the best are asked for. There are none if a
         bound shows that no fixture of the share is among the best; such a share counts as searched.
         """
         if share > 0 and self.bound is not None and self.collector.ranked.rules_out(self.bound):
@@ -196,7 +195,7 @@ class LatticeShares:
         return blocks_in(within=within)
 
     def iterate_seats(self, records: Sequence[PackedContacts], share: int) -> Iterator[Seats]:
-        """Yield, in batches, the seats that the contacts of a share make.
+        """Yield, in batches, the seats formed by the contacts of a share.
 
         ``records`` has the contacts of each direction of the clamp. Where only the best are asked for,
         promising seats come first, and contacts that cannot be among the best are left out.
@@ -224,7 +223,7 @@ class LatticeShares:
         return 0 if self.bound is None or self.bound.error is None else int(self.bound.error.min())
 
     def find_seats(self, records: Sequence[Array], within: Ranges) -> Seats:
-        """Return all seats that some contacts make, with orientations in the ranges ``within`` in radians.
+        """Return all seats formed by given contacts, with orientations in the ranges ``within`` in radians.
 
         ``records`` has an array (N, 19) of contacts for each direction of the clamp.
         """
@@ -238,7 +237,7 @@ class LatticeShares:
     def prove_contacts(self, records: Array, problem: Problem) -> CandidateFixtures:
         """Return the contacts of three locators and a clamp that are proven and at allowed angles, each once.
 
-        They are selected from ``records`` (N, 19). The reports on all records are appended to ``accounts``.
+        They are selected from ``records`` (N, 19). The report on all records is appended to ``accounts``.
         """
         course, blocks = (
             DecidingProgress(len(records), cancel=self.cancel),
@@ -360,7 +359,5 @@ def make_counting_progress(progress: Progress | None, found: int) -> Progress | 
 
 
 def count_ways(blocks: Iterable[Iterable[SearchBlock]]) -> float:
-    """Return the summed cost of all blocks, which is about the number
-    of pairs of chord curves that may go together.
-    """
+    """Return the summed cost of all blocks: about the number of pairs of chord curves that may be combined."""
     return estimate_cost(chain.from_iterable(blocks))

@@ -1,9 +1,9 @@
 """Every seat of three locators on a plate: their holes, the faces they touch, and the pose.
 
-Three locators are two chords that share a peg, which the search for three locators and a clamp finds. Here
-nothing moves, so that it lists them by themselves. Contacts that fix the pose alone, as a simple root, are
-seats (``proof.locator_seats``). Seats are the same up to steps of the lattice, the names of locators and,
-where it moves no hole for a bolt, half a turn of the plate.
+Three locators are two chords that share a peg. The search for three locators and a clamp finds such chords;
+here it lists them without a clamp. A seat is a set of contacts that fixes the pose as a simple root
+(``proof.locator_seats``). Two seats count as equal if they differ only by steps of the lattice, by the names
+of the locators or, if this moves no hole for a bolt, by half a turn of the plate.
 """
 
 from __future__ import annotations
@@ -130,8 +130,8 @@ def make_locating_query(query: Query) -> Query:
 
 
 def make_seat_table(contacts: SeatContacts, problem: Problem, query: Query) -> FixtureTable:
-    """Return the table of those seats that fit on the plate and keep the
-    query's angles and faces to touch, each once.
+    """Return the table of those seats that fit on the plate and satisfy the query's angles and faces to
+    touch, each once.
     """
     toolkit, plate = query.toolkit, query.toolkit.plates[0]
     lowest = [numbers.min(axis=1, keepdims=True, initial=0) for numbers in (contacts.column, contacts.row)]
@@ -228,8 +228,8 @@ def turn_seats_by_half(table: FixtureTable, toolkit: Toolkit) -> FixtureTable:
 def measure_seats(table: FixtureTable, query: Query, problem: Problem) -> Array:
     """Return the figures of quality (N, Q) of N seats.
 
-    Filled in are location error, distances from ends and edges, tilt and smallest face; the other columns
-    stay as they are in the table.
+    Location error, distances from ends and edges, tilt and smallest face are computed; the other columns are
+    taken from the table.
     """
     quality = np.array(table.quality)
     if len(table) == 0:

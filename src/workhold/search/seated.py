@@ -1,9 +1,10 @@
-"""The first fixtures of a list with their seating, ordered anew by it.
+"""The seating of the first fixtures of a list, and the new order that follows from it.
 
-A search finds and ranks fixtures by figures that do not need the seating. Then the seating of the first of
-them, as many as the query says, is computed, once for each pattern of pegs, and they are ranked again;
-warnings of the seating count as those of quality. Equal fixtures keep their order. Fixtures whose seating
-breaks the query's rules are left out; with such rules so are all fixtures whose seating was not computed.
+A search finds and ranks fixtures by figures that do not need the seating. Then the seating is computed for
+the first fixtures, as many as the query asks for, once for each pattern of pegs. These fixtures are ranked
+again; warnings of the seating count like those of quality. Equal fixtures keep their order. Fixtures whose
+seating breaks the query's rules are left out. If there are such rules, fixtures without a computed seating
+are left out as well.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ class SeatingWork:
 
     Parameters
     ----------
-    query : the query; its ``seating`` is how many first fixtures get one.
+    query : the query; its ``seating`` is the number of first fixtures that get one.
     threads : how many threads share the work.
     progress : called as ``progress(fraction done, number of fixtures)``; None for no reports.
     cancel : when set, no further pattern of pegs is begun.
@@ -116,7 +117,7 @@ def answer_with_seating(
 
 
 def is_put_in_by_hand(query: Query) -> bool:
-    """Return whether the part is pushed against its locators by hand, which is so with two clamps."""
+    """Return whether the part is pushed against its locators by hand, as with two clamps."""
     return not query.toolkit.closes_at_once
 
 
@@ -194,7 +195,8 @@ def add_seatings(result: Result, work: SeatingWork) -> Result:
 
 
 def is_as_asked(seating: Seating, query: Query) -> bool:
-    """Return whether a seating keeps the query's opening and foolproof rules.
+    """Return whether a seating satisfies the query's opening and foolproof rules; True for a query without
+    them.
 
     A rule that the query does not have is kept.
     """
@@ -209,8 +211,7 @@ def order_by_seating(
     order, best first; equal ones keep their order.
 
     ``least_effective_error`` is the least effective location error in mm of all fixtures found, also of those
-    without a seating; the ranking counts its steps of error from there. None where the ranking does not use
-    it.
+    without a seating; the ranking counts its steps of error from there. None if the ranking does not use it.
     """
     further = [[one.figures[figure.key] for figure in SEATING_FIGURES] for one in seatings]
     seating = np.array(further).reshape(len(seatings), len(SEATING_FIGURES))
@@ -252,7 +253,7 @@ class SeatedSink:
     Parameters
     ----------
     sink : receives the results with seating.
-    work : the query, and the means to compute the seating.
+    work : the query, with threads, progress and cancel for the seating.
     """
 
     sink: ResultSink
@@ -279,7 +280,7 @@ class SeatedSink:
 def take_tables(tables: Iterator[FixtureTable], count: int) -> Iterator[FixtureTable]:
     """Yield tables until they have at least ``count`` fixtures together, or the iterator ends.
 
-    The iterator then continues behind the tables taken.
+    The iterator can be continued afterwards.
     """
     while count > 0 and (table := next(tables, None)) is not None:
         count -= len(table)

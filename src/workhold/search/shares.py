@@ -3,10 +3,10 @@
 Locators fix the pose in one of two ways. On a lattice of holes they are searched by ranges of orientation
 (``search.lattice_shares``), beside a wall by the hull edges that may lie on it (``search.wall_shares``). In
 each share the contacts of locators with one clamp are found. With one clamp these are the fixtures; with two
-they make seats, whose clamps are paired (``listing.seats``). A preview shows part of what was found, decided
-ahead of the rest.
+they form seats, whose clamps are then paired (``listing.seats``). A preview shows some of the findings before
+the rest is decided.
 
-Where only the best are asked for and tilt counts, a bound of all tilted fixtures is known beforehand
+If only the best are asked for and tilt counts, a bound of all tilted fixtures is known in advance
 (``listing.bounds``). Then square orientations are the first share. If the last of the best square fixtures
 ranks before the bound, no other orientation is searched.
 """
@@ -68,8 +68,8 @@ ENOUGH = 1_000
 class Previews:
     """Previews of a running search: results of the fixtures known so far.
 
-    Each preview has the fixtures of those before it. Only what is decided quickly is shown. The results are
-    marked incomplete, and count what they list.
+    Each preview contains the fixtures of earlier ones. Only contacts that are decided quickly are shown. The
+    results are marked incomplete, and their counts are those of the listed fixtures.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ class Collector(Protocol):
 
 
 class ShareSearch(Protocol):
-    """A search that goes on share by share."""
+    """A search that proceeds share by share."""
 
     @property
     def share_count(self) -> int:
@@ -151,7 +151,7 @@ class ShareSearch(Protocol):
         """Receiver of the findings."""
 
     def search_share(self, share: int, progress: Progress | None) -> tuple[Iterable[Any], bool]:
-        """Search share number ``share``; return (1) its findings, and (2) whether it was searched to its end.
+        """Search share number ``share``; return (its findings, whether it was searched to its end).
 
         The findings are batches for the collector. Pass each batch to it before asking for the next one.
         """
@@ -240,7 +240,7 @@ def search_best_first(
 
     Parameters
     ----------
-    kept : collects the best; also has the limits that further fixtures must keep.
+    kept : collects the best, and provides the limits that further fixtures must keep.
     look : called with the records (N, 19) of each block; None for no previews.
     """
     query, problem = search.problem.query, search.problem
@@ -311,8 +311,8 @@ def search_within_error(
 def bound_tilted_keys(query: Query, problem: Problem, cost: float) -> OrderKeys | None:
     """Return lower bounds of the ranking keys of fixtures at all angles but the preferred ones.
 
-    None where preferred angles are not searched first: (a) without ``best``, (b) where the search's ``cost``
-    is so small that it does not pay.
+    None if preferred angles are not searched first: without ``best``, and if the search's ``cost`` is too
+    small for that to pay.
     """
     return bound_keys_when_tilted(query, problem) if query.best is not None and cost > SQUARE_FIRST else None
 

@@ -1,9 +1,9 @@
 """Seats of three locators with the straps that hold the part down there with the least force.
 
 All seats are listed (``search.seat_search``), the best first: square to the drawing, then by their location
-error. For the first of them a push by hand is sought that presses the part against all three locators and,
-where there are loads, the straps that need the least force (``supports.straps``). These seats stand in the
-order of that force; seats that no push seats are unfit, and come last.
+error. For the first seats, a push by hand that presses the part against all three locators is searched and,
+if there are loads, the straps that need the least force (``supports.straps``). These seats are listed in the
+order of that force. Seats that no push by hand can reach are unfit and come last.
 """
 
 from __future__ import annotations
@@ -61,9 +61,7 @@ NOT_LOADED = (
 def find_strapped_fixtures(
     query: Query, threads: int = 1, progress: Progress | None = None, cancel: Event | None = None
 ) -> Result:
-    """Return every seat of a part on the plate of a query, or the
-    best seats, with straps at the first of them.
-    """
+    """Return every seat of a part on the plate of a query, or the best seats; the first ones have straps."""
     found = find_seats(query, threads, make_stage_progress(progress, 0.0, SEATS), cancel)
     table = place_on_plate(select_within_error(found.table, query), query)
     table = table.take(order_seats(table, query))
@@ -82,7 +80,8 @@ def find_strapped_fixtures(
 
 
 def remarks_on(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
-    """Return the remark that no seat that was examined is held, with the reason; empty where one is held.
+    """Return a list with the remark that straps hold none of the examined seats, with the reason; empty if
+    they hold one.
 
     Also empty without loads. ``holds`` has the straps at each seat.
     """
@@ -140,8 +139,8 @@ def explain_no_seat(found: FoundSeats, query: Query) -> Note:
 
 
 def count_sets(table: FixtureTable, query: Query) -> int:
-    """Return the number of seats, where seats that a rotation of the part
-    onto itself makes equal count once.
+    """Return the number of distinct seats. Seats that a rotation of the part onto itself makes equal count
+    once.
     """
     # Rotations of the part change neither holes nor the place of its centre, only angle and faces.
     from workhold.geometry.symmetry import compute_centroid_of_segments, find_rotations_onto_itself
@@ -232,10 +231,10 @@ def compute_seat_key(table: FixtureTable, name: str) -> Array:
 def find_strapped_holds(
     result: Result, progress: Progress | None, cancel: Event | None
 ) -> tuple[list[StrappedHold], bool]:
-    """Return (1) a hold by straps for each seat, and (2) whether the search came to its end.
+    """Return (a hold by straps for each seat, whether the search came to its end).
 
     Seats are examined in order until as many as the query asks for can be seated by a push by hand; the
-    others are marked as not looked at.
+    others are marked as not examined.
     """
     query = result.query
     straps = query.toolkit.strap_set
@@ -260,8 +259,8 @@ def find_strapped_holds(
 def rank_seats(holds: Sequence[StrappedHold], table: FixtureTable, query: Query) -> list[int]:
     """Return the indices of seats in the order of the list.
 
-    Held seats come first, by the query's ranking; then seats not looked at, then seats that straps do not
-    hold, then seats into which no push by hand brings the part. Equally good seats keep their order.
+    Held seats come first, by the query's ranking; then seats not examined, then seats that straps do not
+    hold, then seats that no push by hand reaches. Equally good seats keep their order.
     """
 
     def make_key(place: int) -> tuple[float, ...]:

@@ -1,9 +1,9 @@
 """The search of a toolkit: its lattice steps, its blocks of work, and the count of simultaneous contacts.
 
 Two pegs of one carrier are a lattice step apart. Two carriers share the direction of rows and differ by the
-travel of the one that moves, along x in the frame of the search. What is particular to a toolkit is data
-(``fixels.toolkit``); which kernels seek an arrangement of pegs is said in ``KERNELS``. The number of
-simultaneous contacts is the measure of how much there is to search (paper, section 5).
+travel of the one that moves, along x in the frame of the search. The properties of a toolkit are data
+(``fixels.toolkit``), and ``KERNELS`` has the kernels for each arrangement of pegs. The number of simultaneous
+contacts measures the size of a search (paper, section 5).
 """
 
 from __future__ import annotations
@@ -151,9 +151,10 @@ def make_curve_tables(
     near: NearSpots = EVERYWHERE,
     within: Array = ANY_TURN,
 ) -> CurveTable:
-    """Return the chord curves of a problem's features, whose ends are moved out a little: ``loose`` (F, 10).
+    """Return the chord curves of a problem's features, given as rows ``loose`` (F, 10) whose ends are moved
+    out a little.
 
-    If standing and moving pegs touch the same features, both carriers share curves; else each has its own.
+    If fixed and moving pegs touch the same features, both carriers share curves; else each has its own.
     ``within`` limits the curves to ranges of psi in radians, ``near`` to some spots of the locators.
     """
     share = partial(make_curve_table, threads=threads, cancel=cancel, near=near, within=within)
@@ -217,7 +218,7 @@ def iterate_cell_runs(wanted: NDArray[np.bool_], together: int) -> Iterator[tupl
 
 
 def limit_precision(precision: Precision, most: float) -> Precision:
-    """Return the precision with ``most`` mm as the largest effective location error that is searched."""
+    """Return the bounds with ``most`` mm as the largest effective location error to be searched."""
     return precision._replace(most=most, most_aslant=most / ASLANT)
 
 
@@ -228,14 +229,14 @@ def sample_numbers(numbers: NDArray[np.int64], many: int) -> NDArray[np.bool_]:
 
 
 def is_round(problem: Problem) -> bool:
-    """Return whether every feature that pegs can touch is an arc about one common centre."""
+    """Return whether all features that pegs can touch are arcs about one common centre."""
     arcs = problem.rows[:, IS_ARC] != 0.0
     return bool(arcs.all()) and len(set(number_centers(problem.rows).tolist())) == 1
 
 
 @define(eq=False)
 class ToolkitSearch:
-    """What the kernels of a toolkit need, and the blocks of work made of it.
+    """The kernels' input for one problem, and the blocks of work made from it.
 
     Parameters
     ----------
@@ -243,9 +244,9 @@ class ToolkitSearch:
     loose : (F, 10) kernel rows of F features, with their ends moved out a little.
     table : chord curves and sliding pairs between the loose features.
     precision : bounds of the location error, with the largest one that is searched.
-    near : which spots of features locators may touch together.
+    near : spots of features that locators may touch together.
     counting : whether to count all simultaneous contacts instead of looking for fixtures only.
-    most_listed : how many contacts each block lists regardless of the rules, when counting.
+    most_listed : number of contacts that each block lists regardless of the rules, when counting.
     every : only one in ``every`` chord curves is used, for an estimate.
     stats : (5,) statistics for each block; blocks do not share them, as they run in different threads.
     """
@@ -497,8 +498,8 @@ class ToolkitSearch:
         """Return the kernels' limits for a least closure margin, and a
         largest effective error ``most`` in mm.
 
-        With a finite error the margin is at least that of a weak closure, since then no fixture with a
-        warning is of interest.
+        With a finite error the margin is at least that of a weak closure, because fixtures with a warning are
+        then of no interest.
         """
         if most < inf:
             margin = max(margin, WEAK_CLOSURE - MARGIN_SLACK)
@@ -506,21 +507,22 @@ class ToolkitSearch:
 
 
 def count_contacts(workpiece: Workpiece, toolkit: Toolkit, *, threads: int | None = None) -> int:
-    """Return how many sets of four pegs touch a workpiece at the same time, each contact inside its feature.
+    """Return the number of sets of four pegs that touch a workpiece at the same time, each contact inside its
+    feature.
 
-    Gap, closure and clamping are not tested. Two special kinds of set count only where they can be
-    distinguished: those with a chord between parallel faces, and those whose moving pegs touch faces square
-    to the motion.
+    Gap, closure and clamping are not tested. Two kinds of sets count only if their members can be
+    distinguished: sets with a chord between parallel faces, and sets whose moving pegs touch faces square to
+    the motion.
 
     Parameters
     ----------
     workpiece, toolkit : the part, and the toolkit that holds it.
-    threads : how many threads share the work; None for one on each processor.
+    threads : number of threads; None for one on each processor.
 
     Raises
     ------
     InputError
-        For a peg that fits nowhere along the part.
+        For a peg too large to touch any face of the part.
     """
     return count_problem_contacts(Problem.from_query(Query(workpiece, toolkit)), threads)
 

@@ -1,15 +1,17 @@
-"""Where round pegs on lines touch a part that lies flush on a wall, and whether two press it there.
+"""Contacts of round pegs on lines with a part that lies flush on a wall, and whether two of them press it
+there.
 
 Both are in closed form and with bounds of the error. In the wall's frame a part lies on a hull edge: u runs
-along it from its start, v up from it. The lines are rows, of one v each, or columns, of one u each; every one
-meets a straight feature in one point at most and an arc in two. A locator and a clamp press the part against
-the wall where the null vector of the four wrenches, in doubles, says so.
+along it from its start, v up from it. The lines are rows (each with one v) or columns (each with one u). Each
+line meets a straight feature in at most one point and an arc in at most two. The null vector of the four
+wrenches, computed in doubles, shows whether a locator and a clamp press the part against the wall.
 
-Bounds of the error. Two roundings count; everything else is exact. The tangent of the hull edge is off by
-``turn`` radians; sums and products of lengths up to ``size`` mm are off by ``off`` mm together. A contact is
-then off by ``off`` over the sine of the angle at which its line meets the feature. Its normal is off by
-``turn`` and, on an arc, by the contact's error over the radius; the factors below are generous. Where a line
-only grazes an arc there is no bound, and the contact is decided in ball arithmetic (midpoint and radius).
+Bounds of the error. Two errors count; everything else is exact. The tangent of the hull edge is wrong by up
+to ``turn`` radians; sums and products of lengths up to ``size`` mm are wrong by up to ``off`` mm in total.
+The error of a contact is then ``off`` divided by the sine of the angle at which its line meets the feature.
+Its normal is off by ``turn`` and, on an arc, by the contact's error over the radius; the factors below are
+generous. Where a line only grazes an arc there is no bound, and the contact is decided in ball arithmetic
+(midpoint and radius).
 """
 
 from __future__ import annotations
@@ -76,8 +78,8 @@ class PinContacts(RowArrays):
     slack : (M,) distance in mm to the nearer end of the feature, negative beyond it; inf on a whole circle.
     reach : (M,) error bound of ``point``, in mm.
     swing : (M,) error bound of ``normal``, in radians.
-    branch : (M,) which of the two points on an arc: -1 for the one with the smaller coordinate along the
-        line, 1 for the other; 1 on a straight feature.
+    branch : (M,) -1 or 1 for the point on an arc with the smaller or larger coordinate along the line; 1 on a
+        straight feature.
     """
 
     line: IntArray
@@ -134,8 +136,8 @@ def find_line_contacts(
     """Return the contacts of pegs on lines with straight features; features parallel to the lines have none.
 
     ``levels`` (K,) has the coordinate of each line in mm: v of a row, u of a column. ``rows`` (F, 12) are the
-    kernel rows of the features. ``along`` are the two columns of ``rows`` with a position's coordinate along
-    the lines and across them, ``across`` those with an axis's component along the lines and across them.
+    kernel rows of the features. ``along`` are the two columns of ``rows`` with a feature's position, along
+    and across the lines. ``across`` are the two columns with its axis, along and across the lines.
     """
     straight = np.flatnonzero((rows[:, IS_ARC] == 0.0) & (np.abs(rows[:, across[1]]) > PARALLEL))
     some = rows[straight]
@@ -227,7 +229,7 @@ def compute_least_ahead(rows: Array) -> Array:
 
 
 def bound_heights(rows: Array, across: tuple[int, int], spare: Array) -> tuple[Array, Array]:
-    """Return (1) the least and (2) the largest coordinate across the lines of contacts with arcs, each (F,).
+    """Return (the least, the largest) coordinate across the lines of contacts with arcs, (F,) each.
 
     Coordinates are in mm from the arcs' centres; contacts a little past the ends are included. ``rows`` (F,
     12) are the kernel rows of the arcs. ``across`` are the two columns of ``rows`` with the axis's component
@@ -332,8 +334,8 @@ def judge_closure(
 
     ``null`` (M, 4) are the forces of the wall's two ends, the locator and the clamp, up to a common factor.
     ``pushes`` (M,) is the cosine of the angle between the clamp's direction ``push`` and the force of its tip
-    on the part. ``held`` (M,) is True where the pair surely presses the part, ``open`` (M,) where double
-    arithmetic leaves that undecided. ``one`` are the contacts of locators, and ``locator`` (M,) has each
+    on the part. ``held`` (M,) is True for pairs that surely press the part, ``open`` (M,) for pairs that
+    double arithmetic leaves undecided. ``one`` are the contacts of locators, and ``locator`` (M,) has each
     pair's index in it; ``two`` are the M contacts of the clamp.
 
     The formula: a and b are the normals of the part at locator and clamp, m and M the moments of these

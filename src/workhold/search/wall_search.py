@@ -1,10 +1,10 @@
 """The search beside a wall: part flush on it, a locator in a row of holes, and a clamp on a row or a column.
 
-There is one orientation for each hull edge. Every row of holes then meets every feature in closed form, which
-gives the locator's places, and so do the clamp's lines. The null vector of the four wrenches decides whether
-a pair presses the part against the wall: geometrically (Overmars et al. 1995), the line of the joint force of
-locator and clamp must meet the hull edge strictly between its ends. What the error bounds leave undecided is
-decided in ball arithmetic.
+There is one orientation for each hull edge. For each, the crossings of rows of holes with features, in closed
+form, are the locator's places; the crossings of the clamp's lines are the places of its tip. The null vector
+of the four wrenches decides whether a pair presses the part against the wall: geometrically (Overmars et al.
+1995), the line of the joint force of locator and clamp must meet the hull edge strictly between its ends.
+Pairs that the error bounds leave undecided are decided in ball arithmetic.
 """
 
 from __future__ import annotations
@@ -275,8 +275,8 @@ class WallSearch(FlushSearch):
     ) -> WallFixtures:
         """Return pairs whose contacts come from ball arithmetic where doubles are too coarse.
 
-        That is so near a row or a column that grazes an arc. With one clamp the forces come from there, too.
-        Parameters as in :meth:`sharpen_pairs`.
+        Doubles are too coarse near a row or a column that grazes an arc. With one clamp the forces come from
+        ball arithmetic, too. Parameters as in :meth:`sharpen_pairs`.
         """
         far = np.flatnonzero(np.maximum(one.reach[locator], two.reach) > SAME_PLACE / 2)
         places, tip, null = pressed.locator.copy(), pressed.tip.copy(), pressed.null.copy()
@@ -349,7 +349,7 @@ def bound_reaction_errors(
 def make_searches(query: Query, ways: Sequence[Toolkit], pairing: bool = False) -> list[WallSearch]:
     """Return one search for each toolkit of ``ways``, which differ in the direction of the clamp alone.
 
-    ``pairing`` says that there are two clamps, so that contacts with one clamp need not close.
+    ``pairing`` tells that there are two clamps; contacts with one clamp then need no closure.
     """
     one, *others = (evolve(query, toolkit=way) for way in ways)
     problem = Problem.from_query(one, pairing=pairing)
@@ -393,7 +393,7 @@ def find_fixtures_on_edge(
 
 
 def bound_reach(rows: Array, upward: bool) -> tuple[float, float]:
-    """Return (1) the least and (2) the largest coordinate in mm that features reach: v if ``upward``, else u.
+    """Return (the least, the largest) coordinate in mm of the features: v if ``upward``, else u.
 
     ``rows`` (F, 12) are the kernel rows; an arc counts as its whole circle.
     """

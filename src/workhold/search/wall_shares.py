@@ -1,7 +1,7 @@
 """The search beside a wall, in shares: one hull edge of the part after the other lies on the wall.
 
-What presses the part there is a locator and a clamp (``search.wall_search``), or two pegs of a lattice that
-slides toward the wall (``search.lattice_pairs``).
+A locator and a clamp press the part there (``search.wall_search``), or two pegs of a lattice that slides
+toward the wall (``search.lattice_pairs``).
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class LatticePairSearch(FlushSearch):
     def can_touch(self) -> bool:
         """Whether two pegs can touch the part.
 
-        Also True where all faces met are square to the wall or parallel to it, since then closure is what is
+        Also True if all faces met so far are square or parallel to the wall, since then only closure is
         missing.
         """
         return self.is_square or self.examined > 0
@@ -89,7 +89,8 @@ class LatticePairSearch(FlushSearch):
             yield good
 
     def keep_nearest_of(self, pairs: LatticePairs, edge: int) -> None:
-        """Keep that of some pairs on hull edge ``edge`` which comes nearest to pressing the part.
+        """Keep the pair on hull edge ``edge`` that comes nearest to pressing the part, if it is nearer than
+        the one kept so far.
 
         The pairs must have their forces. See :meth:`FlushSearch.keep_nearest`.
         """
@@ -128,13 +129,13 @@ class LatticePairSearch(FlushSearch):
     def choose_jaw_columns(
         self, pairs: LatticePairs, edge: int, reach: tuple[float, float]
     ) -> tuple[NDArray[np.int64], LatticePairs]:
-        """Return (1) the column of each pair's first peg at which a wall with
-        ends holds the part best, (N,); (2) the pairs.
+        """Return (the column of each pair's first peg at which a wall with ends holds the part best (N,), the
+        pairs).
 
-        -1 where no column holds the part: the point where the wall's force acts must lie inside the common
-        stretch of wall and part. The best column has the longest common stretch; among equal ones, that with
-        the stretch nearest to the wall's middle. The returned pairs have the forces at the ends of that
-        stretch. ``reach`` is (begin, end) of the wall in mm.
+        The column is -1 if none holds the part: the wall's force must act inside the common stretch of wall
+        and part. The best column has the longest common stretch; among equal ones, that with the stretch
+        nearest to the wall's middle. The returned pairs have the forces at the ends of that stretch.
+        ``reach`` is (begin, end) of the wall in mm.
         """
         flush, pitch = self.problem.workpiece.flush, self.lattice.pitch[0]
         columns, first = self.lattice.column_count, np.full(len(pairs), -1, np.int64)
@@ -259,10 +260,10 @@ class WallShares:
         return len(self.edges)
 
     def search_share(self, share: int, progress: Progress | None) -> tuple[list[FixtureTable | Seats], bool]:
-        """Search one hull edge; return (1) what was found, and (2) whether the search came to its end.
+        """Search one hull edge; return (findings, whether the search came to its end).
 
-        Two cases: (a) with one closing movement, (1) is a table of fixtures for each search that found any;
-        (b) with two clamps, (1) is the seats.
+        With one closing movement the findings are a table of fixtures for each search that found any. With
+        two clamps they are the seats.
         """
         edge, is_whole = self.edges[share], True
         found: dict[FlushSearch, list[Any]] = {search: [] for search in self.searches}

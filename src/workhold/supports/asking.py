@@ -1,7 +1,8 @@
-"""Requests for supports: values by name, and smaller sizes that are tried where the usual ones find no place.
+"""Requests for supports: values by name, and smaller sizes to try if there is no place for the usual ones.
 
-Parts with thin walls below, slots or small bosses have no room for the usual pads, and narrow parts none for
-a clamp so far inside its triangle. For these, ends of dowels as thick as the locating ones are used.
+Parts with thin walls below, slots or small bosses have no room for the usual pads. Narrow parts have no room
+for a clamp with the usual distance from the sides of its triangle. For these, ends of dowels as thick as the
+locating ones are used.
 """
 
 from __future__ import annotations
@@ -77,10 +78,9 @@ def make_request(query: Query, thickness: float | None, asked: Mapping[str, Any]
 def try_smaller_requests(
     query: Query, thickness: float | None, asked: Mapping[str, Any] | None = None
 ) -> Iterator[SupportRequest]:
-    """Yield the request that is asked for; then, if no size was asked
-    for, requests with smaller pads and tips.
+    """Yield the request; then, if the user gave no size, requests with smaller pads and tips.
 
-    Sizes that the toolkit prescribes stay.
+    Sizes that the toolkit prescribes are kept.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def list_up_to_first_supported(every: Iterable[Supports]) -> Iterator[Supports]:
 
 
 def select_given(asked: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keyword arguments that are not None, with the value :data:`OUTLINE` replaced by None."""
+    """Return the keyword arguments that are not None; the value :data:`OUTLINE` is replaced by None."""
     named = {name: value for name, value in asked.items() if value is not None}
     return {
         name: None if isinstance(value, str) and value == OUTLINE else value for name, value in named.items()

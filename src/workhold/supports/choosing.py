@@ -1,10 +1,10 @@
-"""The choice of the best triples of supports, or of all in order, in blocks that need little memory.
+"""Selection of the best triples of supports, or of all in order, in blocks that need little memory.
 
 Let r_j be the force that the clamp must put on support j to keep it in contact. The sum of max(r_j, 0) is a
 lower bound of the clamp force that a triple needs, wherever the clamp stands. The force on a support is at
-least what loads alone press on it, and at least a third of what all three carry. The tipping arm is at most
-the radius of the incircle. So triples whose bounds rank after the last of the best triples so far are left
-out, and the clamp's best point is sought for the others only. Where the clamp's point is given, the bounds
+least the force that loads alone exert on it, and at least a third of the force on all three. The tipping arm
+is at most the radius of the incircle. So triples whose bounds rank after the last of the best triples so far
+are skipped; the clamp's best point is computed only for the others. If the clamp's point is given, the bounds
 are exact.
 """
 
@@ -55,15 +55,15 @@ ROUNDING = 1e-9
 
 
 def round_coarsely(value: float) -> float:
-    """Return a figure rounded to two significant digits, as the
-    ranking compares it; 0 for figures below 1e-9.
+    """Return a figure rounded to two significant digits, for comparison in the ranking; 0 for figures below
+    1e-9.
     """
     return float(f"{value:.{COARSE - 1}e}") if abs(value) > 10.0**-FIGURE_DECIMALS else 0.0
 
 
 def bound_coarse_figure(value: float) -> tuple[float, float]:
-    """Return (low, high): the figures that :func:`round_coarsely`
-    rounds to ``value`` are surely between them.
+    """Return (low, high), an interval that contains all figures that :func:`round_coarsely` rounds to
+    ``value``.
 
     Figures below low are rounded to less, figures above high to more.
     """
@@ -117,7 +117,7 @@ class ChosenTriples:
     Parameters
     ----------
     corners : the triples, best first.
-    count : how many valid triples there are in all; None where not all were examined.
+    count : number of all valid triples; None if not all were examined.
     stopped : whether the search was stopped early.
     """
 
@@ -134,8 +134,8 @@ class BoundFigures:
 
     Parameters
     ----------
-    falls : 1.0 where the part falls over before it is clamped, else 0.0.
-    late : 1.0 where the clamp may not stand at the point asked for, else 0.0.
+    falls : 1.0 if the part falls over before it is clamped, else 0.0.
+    late : 1.0 if the clamp may not stand at the requested point, else 0.0.
     hang : class of the clamp's place, see :class:`RankedPlaces`.
     need : clamp force needed.
     force : largest force on a support.
@@ -153,7 +153,7 @@ class BoundFigures:
 
     @property
     def classes(self) -> tuple[Array, Array, Array]:
-        """Figures that count first in the order: ``falls``, ``late`` and ``hang``."""
+        """The first figures of the order: ``falls``, ``late`` and ``hang``."""
         return self.falls, self.late, self.hang
 
     def take(self, rows: NDArray[np.intp] | Flags) -> BoundFigures:
@@ -183,7 +183,9 @@ class KeptTriples:
 
     @property
     def last(self) -> Key | None:
-        """Key that a further triple must come before; None while there is room for more triples."""
+        """Key of the worst kept triple, which a further triple must beat; None while there is room for more
+        triples.
+        """
         return self.found[-1][0] if self.found and len(self.found) == self.limit else None
 
     def add_ranked(self, ranked: list[Ranked]) -> None:
@@ -213,11 +215,11 @@ class TripleChoice:
     ----------
     sides : the holes that may hold a support, with the directed lines between them and the forces of the
         loads.
-    room : which holes the carriers have room to use together.
+    room : the room of the carriers, which decides the holes that can be used together.
     places : the places for the clamp's tip.
     inside : least distance of the clamp from a side of the triangle, in mm.
     center : (2,) centre of the part's area, in mm in the part's coordinates.
-    point : (2,) point at which the clamp should stand; None where it may stand anywhere.
+    point : (2,) requested point of the clamp; None for any point.
     """
 
     sides: HoleSides
@@ -312,9 +314,10 @@ class TripleChoice:
                 yield done, np.stack([np.full(len(one), i), one, other], axis=1)
 
     def bound_figures(self, corners: CornerTriples) -> BoundFigures:
-        """Return bounds: no figure of a triple can be better than its bound.
+        """Return bounds of figures: no figure of a triple is better than its bound.
 
-        For triples over which the clamp may stand at the point asked for, they are the figures themselves.
+        For triples over which the clamp may stand at the requested point, the bounds are the figures
+        themselves.
         """
         count = len(corners.numbers)
         late, hang, need, force = (np.zeros(count) for _ in range(4))
@@ -343,9 +346,9 @@ class TripleChoice:
         return np.asarray(np.round(inside, FIGURE_DECIMALS))
 
     def find_allowed_at_given(self, corners: CornerTriples) -> Flags:
-        """Return a mask (N,): True for triples over which the clamp may stand at the point asked for.
+        """Return a mask (N,): True for triples over which the clamp may stand at the requested point.
 
-        All False where no point was asked for.
+        All are False if no point was requested.
         """
         if self.point is None or not self.point_allowed:
             return np.zeros(len(corners.numbers), np.bool_)
@@ -354,16 +357,14 @@ class TripleChoice:
         )
 
     def repeat_given_point(self, corners: CornerTriples) -> Array:
-        """Return the point asked for, repeated for each triple, (N, 2);
-        zeros where no point was asked for.
-        """
+        """Return the requested point, repeated for each triple, (N, 2); zeros if no point was requested."""
         return np.broadcast_to(np.zeros(2) if self.point is None else self.point, (len(corners.numbers), 2))
 
     def compute_figures(self, corners: CornerTriples, points: Array) -> tuple[Array, Array, Array]:
-        """Return (1) the clamp force needed in N, (2) the largest support
-        force with it in N, (3) the tipping arm in mm.
+        """Return (the clamp force needed in N, the largest support force with it in N, the tipping arm in
+        mm), (N,) each.
 
-        Each is (N,). The clamp stands at points (N, 2). Without loads the forces are 0.
+        The clamp stands at points (N, 2). Without loads the forces are 0.
         """
         sides = self.sides.measure_distances(corners, points)
         arm = sides.min(axis=1)
@@ -376,9 +377,7 @@ class TripleChoice:
         return need, np.maximum(force, 0.0), arm
 
     def find_entering(self, bounds: BoundFigures, last: Key) -> Flags:
-        """Return a mask (N,): True for triples that may rank before the
-        key ``last``, by bounds of their figures.
-        """
+        """Return a mask (N,): True for triples whose bounds allow a rank before the key ``last``."""
         count = len(bounds.classes)
         keys: list[tuple[Array, float, float]] = [
             (value, one, one) for value, one in zip(bounds.classes, last[:count], strict=True)
@@ -405,21 +404,19 @@ class TripleChoice:
         return out | open_
 
     def find_best_arms(self, corners: CornerTriples) -> tuple[Array, Array, Array]:
-        """Return (1) the points with the largest tipping arm, (N, 2),
-        (2) the arms in mm, (3) the points' classes.
+        """Return (the points (N, 2) with the largest tipping arm, the arms in mm, the points' classes).
 
-        The arm is 0 where the clamp may stand nowhere. For classes see :class:`RankedPlaces`.
+        The arm is 0 if there is no place for the clamp. For classes see :class:`RankedPlaces`.
         """
         some = self.make_triangles(corners)
         points, value, classes = self.places.find_best(some, some.steepness, self.inside)
         return points, 1.0 / value, classes
 
     def find_least_forces(self, corners: CornerTriples) -> tuple[Array, Array, Array]:
-        """Return (1) the points with the least clamp force, (N, 2), (2)
-        the forces in N, (3) the points' classes.
+        """Return (the points (N, 2) with the least clamp force, the forces in N, the points' classes).
 
-        Where no clamp is needed the point is NaN, and force and class are 0. Where the clamp may stand
-        nowhere the force is inf.
+        If no clamp is needed, the point is NaN, and force and class are 0. If there is no place for the
+        clamp, the force is inf.
         """
         reach = (
             self.sides.compute_contact_forces(corners)
@@ -439,9 +436,9 @@ class TripleChoice:
         return Triangles.from_corners(self.sides.points[corners.numbers])
 
     def judge_triples(self, corners: CornerTriples, last: Key | None) -> list[Ranked]:
-        """Return (key, indices of holes) of the triples that are valid and may rank before the key ``last``.
+        """Return (key, indices of holes) of the valid triples that rank before the key ``last``.
 
-        With ``last`` None, of all valid triples.
+        With ``last`` None, all valid triples are returned.
         """
         corners = corners.take(self.room.place_sets(corners.numbers).fits)
         given = self.find_allowed_at_given(corners)
@@ -481,7 +478,7 @@ class TripleChoice:
     ) -> list[Ranked]:
         """Return (key, indices of holes) of N triples from their figures (N,); smaller keys are better.
 
-        ``late`` is 1.0 for triples over which the clamp cannot stand at the point asked for, else 0.0.
+        ``late`` is 1.0 for triples over which the clamp cannot stand at the requested point, else 0.0.
         """
         standing = self.measure_standing(corners)
         falls = falls_over(standing)

@@ -4,10 +4,10 @@ Here r_j is the force that the clamp must put on support j, beta_j(t) is the sha
 support j takes with the clamp at t (barycentric coordinates), b_j is the gradient of beta_j, and s_j is the
 place of support j. The points with C beta_j(t) >= r_j form a triangle similar to that of the supports. It
 shrinks to t* = sum r_j s_j / sum r_j as C falls to C* = sum r_j (over r_j > 0). So t* is best if the clamp
-may stand there. Else the best point lies on the border of the allowed places: where two of the r_j / beta_j
-are equal, at a corner, or where b_j is normal to an arc of the border. With r_j = |b_j| the value is one over
-the distance to the nearest side of the triangle: then the same search finds the best tipping arm, and t* is
-the incentre.
+may stand there. Otherwise the best point is on the border of the allowed places: where two of the r_j /
+beta_j are equal, at a corner, or where b_j is normal to an arc of the border. With r_j = |b_j| the value is
+the inverse of the distance to the nearest side of the triangle. Then the same search finds the best tipping
+arm, and t* is the incentre.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class ClampPlaces:
     rings : (R, 4) rings that the clamp can reach: centre x and y, least and largest radius, in the part's
         coordinates in mm; None for no limit.
     tip_margin : least distance in mm of the tip from the border of its face.
-    kept_off : regions by the height of the face, each with the least distance in mm of the tip's centre from
-        them.
+    kept_off : regions by height of the face, each with the least distance in mm of the tip's centre from the
+        regions.
     """
 
     face: TouchableFace
@@ -70,8 +70,7 @@ class ClampPlaces:
         object.__setattr__(self, "corners", np.unique(np.concatenate(corners), axis=0))
 
     def list_borders(self, level: float | None) -> tuple[CurvePieces, CurvePieces, Array]:
-        """Return (1) the pieces of lines and (2) of circles that border the
-        places, and (3) corners (K, 2) of the border.
+        """Return (pieces of lines, pieces of circles, corners (K, 2)) of the border of the places.
 
         They are those on faces of one height, ``level`` in mm.
         """
@@ -304,7 +303,7 @@ class CurvePieces:
     def mask_points_off_pieces(self, points: Array, round_: bool) -> Array:
         """Return points (..., P, 2) with NaN for those off their piece.
 
-        Point (..., p) must lie on the curve of piece p. ``round_`` says whether the curves are circles.
+        Point (..., p) must lie on the curve of piece p. ``round_`` tells whether the curves are circles.
         """
         low, high = self.spans.T
         along = compute_parameters(self.curves, points, round_)
@@ -320,11 +319,12 @@ class CurvePieces:
 class RankedPlaces:
     """Places of the clamp in classes, best first.
 
-    The first classes are places over material that reaches down; the last may be over overhangs, too.
+    The first classes are places over material that reaches down to the plate; the last one also has places
+    over overhangs.
 
     Parameters
     ----------
-    classes : places of each class; each contains those of the class before.
+    classes : places of each class; each class contains the previous one.
     """
 
     classes: tuple[ClampPlaces, ...]
@@ -336,7 +336,7 @@ class RankedPlaces:
     def find_classes(self, points: Array) -> Array:
         """Return the class of each point (N, 2), (N,), counted from 0.
 
-        A point where the tip may not stand counts as of the last class.
+        A point where the tip may not stand is put into the last class.
         """
         found = np.full(len(points), float(len(self.classes) - 1))
         for number in reversed(range(len(self.classes) - 1)):
@@ -393,7 +393,7 @@ def measure_distances(curve: Array, points: Array, round_: bool) -> Array:
 def compute_parameters(curves: Array, points: Array, round_: bool) -> Array:
     """Return the positions of points (..., 2) along their curves (..., 3), as (...).
 
-    Two cases: (a) lines: in mm; (b) circles, with ``round_``: angles in radians.
+    They are in mm on lines. On circles, with ``round_``, they are angles in radians.
     """
     x, y = points[..., 0], points[..., 1]
     if round_:

@@ -1,13 +1,11 @@
-"""Faces that pads and a tip may touch, and the radius of the largest disc about a point that lies on one of
-them.
+"""Faces that pads and a tip may touch, and the largest disc about a point that lies on one of them.
 
-A face is the region in an outer loop without its openings; keep-out zones are excluded. The room at a point
-is the distance to the nearest border of the face that it lies on, negative off all faces. Which side of a
-border a point is on is decided by the parity of crossings with the chords, corrected between each arc and its
-chord.
+A face is the region inside an outer loop and outside its openings; keep-out zones are excluded. The room at a
+point is the distance to the nearest border of its face, negative off all faces. Which side of a border a
+point is on is decided by the parity of crossings with the chords, corrected between each arc and its chord.
 
-Regions at the height of a face also restrict the clamp on top: its head must keep clear of what rises above
-the face, and its tip presses better where it keeps clear of overhangs.
+Regions at the height of a face also restrict the clamp on top: its head must keep clear of material that
+rises above the face, and its tip presses better away from overhangs.
 """
 
 from __future__ import annotations
@@ -176,13 +174,13 @@ def group_by_face(loops: Sequence[Loop]) -> list[list[int]]:
 
 @define(frozen=True, eq=False)
 class TouchableFace:
-    """Faces side by side or above one another, with keep-out zones.
+    """Faces side by side or at different heights, with keep-out zones.
 
     A disc must lie on one face, clear of all zones.
 
     Parameters
     ----------
-    borders : for each face its outer border and its openings; then the borders of the zones.
+    borders : borders in this order: for each face its outer border and its openings; then the zones.
     faces : index in ``borders`` at which each face begins.
     zones : number of borders, the last ones, that are zones.
     levels : height in mm of each face; None where not known.
@@ -219,7 +217,7 @@ class TouchableFace:
 
     @cached_property
     def own(self) -> TouchableFace:
-        """Same faces without keep-out zones."""
+        """The same faces without keep-out zones."""
         count = len(self.borders.loops) - self.zones
         return TouchableFace(FaceBorders(self.borders.loops[:count]), self.faces, 0, self.levels)
 
@@ -278,8 +276,8 @@ class TouchableFace:
         return int(np.searchsorted(self.faces, border, side="right")) - 1
 
     def is_on_left(self, border: int) -> bool:
-        """Return whether the allowed side of a border is on its left;
-        allowed is on the face and off the zones.
+        """Return whether the allowed side of a border is on its left; the allowed side is on the face and off
+        the zones.
         """
         return (compute_signed_area(self.borders.loops[border]) > 0) == (border in self.faces)
 

@@ -5,18 +5,18 @@ With beta_j(q) = b_j . q + c_j the barycentric coordinates of a point of the pla
     N_j = C beta_j(t) + A beta_j(p) + b_j . (z g + (M_y, -M_x) + sum h_i a_i (-n_i)),
 
 for a clamp force C at t, a force g at (p, z) with A downward, and peg forces a_i at heights h_i. That is the
-balance of the vertical forces and of both tilting moments, because beta_j is affine. As a_i >= 0, the height
-that lowers N_j most is the lower end of a band where b_j . (-n_i) > 0 and the upper end elsewhere, whatever
-the load. In the direction of g all is a constant and a sinusoid; in p, z and A it is linear.
+balance of the vertical forces and of both tilting moments, because beta_j is affine. As a_i >= 0, N_j is
+least at the lower end of a band if b_j . (-n_i) > 0 and at the upper end otherwise, whatever the load. As a
+function of the direction of g, N_j is a constant plus a sinusoid; in p, z and A it is linear.
 
 Let d be the distance from the side of a triangle opposite to support j, and h_j the height of the triangle
 over that side. Then beta_j(q) = d(q) / h_j, and h_j N_j is the same for all supports opposite to the side. So
-the worst loads are sought once for each directed line through two holes, and not for each of the many more
-triangles.
+the worst loads are computed once per directed line through two holes instead of once per triangle, of which
+there are far more.
 
 Glossary
 --------
-side : a line from one hole to another; what lies on its left is at a positive distance.
+side : a directed line from one hole to another; points on its left are at a positive distance.
 """
 
 from __future__ import annotations
@@ -58,11 +58,11 @@ AT_ONCE = 1 << 16
 
 @define(frozen=True, eq=False)
 class PegForces:
-    """The pegs' answers to loads in the plane, for one fixture.
+    """Peg forces of one fixture per unit of load in the plane.
 
     Parameters
     ----------
-    center : (2,) about which moments are taken, in mm.
+    center : (2,) point in mm about which moments are taken.
     pushes : (P, 2) unit vectors along which the P pegs push, in the part's frame.
     answers : (P, 4) peg forces per unit of g_x, g_y, moment in N mm about the centre, and jaw force.
     """
@@ -73,7 +73,7 @@ class PegForces:
 
     @classmethod
     def from_fixture(cls, fixture: Fixture, toolkit: Toolkit, touched: TouchableFeatures) -> PegForces:
-        """Return the answers of a fixture's pegs to loads, with a jaw that keeps its force."""
+        """Return the peg forces of a fixture per unit of load, with a jaw that keeps its force."""
         matrices = touched.compute_for_fixture(fixture, toolkit)
         scale = np.array([1.0, 1.0, touched.length, 1.0])
         return cls(touched.center, -matrices.normals[0], matrices.inverses[0].T / scale)
@@ -109,8 +109,8 @@ class AffineFunctions:
     def compute_leverage(self, pegs: PegForces, bands: Array, highest: bool) -> Array:
         """Return h_i n . (-n_i) for each peg i, (..., P), at the end of its band where it is least.
 
-        With ``highest`` at the end where it is largest. Here n is ``normals``, -n_i the direction in which
-        peg i pushes, and h_i the height in mm at which it presses; ``bands`` (P, 2) are the lowest and
+        With ``highest``, at the end where it is largest. Here n is ``normals``, -n_i is the direction in
+        which peg i pushes, and h_i the height in mm at which it presses. ``bands`` (P, 2) are the lowest and
         highest heights.
         """
         along = self.normals[..., :1] * pegs.pushes[:, 0] + self.normals[..., 1:] * pegs.pushes[:, 1]
@@ -195,8 +195,8 @@ def compute_support_forces(
 
     Parameters
     ----------
-    lines : barycentric coordinate beta_j of each support. With distances from the opposite sides instead,
-        forces come out multiplied by the triangles' heights over these sides.
+    lines : barycentric coordinate beta_j of each support. If distances from the opposite sides are given
+        instead, the forces are multiplied by the triangles' heights over these sides.
     bands : (P, 2) heights at which each peg presses, in mm.
     loads : loads whose heights are known.
     jaw_force : force on the moving carrier, in N.
@@ -234,7 +234,7 @@ def count_worst_cases(load: SpatialLoad) -> int:
 
 
 def compute_jaw_lift(lines: AffineFunctions, pegs: PegForces, bands: Array) -> Array:
-    """Return by how much the jaw lifts each support at most, (...), in N per N of jaw force.
+    """Return the largest force by which the jaw lifts each support, (...), in N per N of jaw force.
 
     Parameters as in :func:`compute_support_forces`.
     """
@@ -310,7 +310,7 @@ class HoleSides:
     Parameters
     ----------
     points : (H, 2) centres of the holes, in mm in the part's coordinates.
-    pegs : answers of the fixture's pegs to loads.
+    pegs : peg forces of the fixture per unit of load.
     bands : (P, 2) lowest and highest height in mm at which each peg presses.
     loads : loads whose heights are known.
     jaw_force : force on the moving carrier, in N.
@@ -355,8 +355,8 @@ class HoleSides:
     def make_corners(self, numbers: IntArray, inside: float) -> CornerTriples:
         """Return the triangles of three holes whose incircle has a radius of at least ``inside`` mm.
 
-        ``numbers`` (N, 3) are indices of holes, ascending in each row. Flat triangles are left out, too. No
-        point of a triangle is farther inside than the incircle's centre.
+        ``numbers`` (N, 3) are indices of holes, ascending in each row. Flat triangles are left out, too. The
+        incircle's centre is the point farthest inside the triangle.
         """
         count = len(self.points)
         i, j, k = numbers.T

@@ -1,20 +1,19 @@
 """The effect of friction on supports: the least clamp force for which some friction forces balance the loads.
 
 Every contact presses within its cone of friction: pegs on their faces, supports from below, the clamp from
-above. Of the heights at which pegs may press, the ends of their bands are tried, and the worst counts. The
-moving carrier pushes with the jaw force as before. The least clamp force that balances a load is a linear
-program in the forces along the edges of pyramids inside the cones, with six equations of balance and one for
-the jaw. It is convex in the load, so the ends of ranges, and corners around a range of directions, are the
-worst loads.
+above. Pegs are taken at both ends of their bands of heights, and the worst result counts. The moving carrier
+pushes with the jaw force as before. The least clamp force that balances a load is a linear program in the
+forces along the edges of pyramids inside the cones, with six equations of balance and one for the jaw. It is
+convex in the load, so the ends of ranges, and corners around a range of directions, are the worst loads.
 
 The result is optimistic: with friction, statics does not determine the forces, and the most favourable ones
 are assumed. It does not affect the ranking.
 
 The programs, minimize c . x subject to A x = b, x >= 0, with c >= 0, differ in b alone. They are solved by
-the simplex method in two phases (G. B. Dantzig, *Linear Programming and Extensions*, 1963, chapter 5), by
-R. G. Bland's rule, which never goes in circles (Mathematics of Operations Research 2, 1977). An optimal basis
-of one b stays optimal for every other b that it solves with x >= 0, because the reduced costs do not depend
-on b. So few programs are solved, and the rest are looked up.
+the simplex method in two phases (G. B. Dantzig, *Linear Programming and Extensions*, 1963, chapter 5), by R.
+G. Bland's rule, which never goes in circles (Mathematics of Operations Research 2, 1977). An optimal basis of
+one b stays optimal for every other b that it solves with x >= 0, because the reduced costs do not depend on
+b. So few programs are solved, and the others reuse their bases.
 
 Reference: J. Kerr and B. Roth, "Analysis of multifingered hands", International Journal of Robotics Research
 4, 1986, for pyramids inside the cones and linear programs.
@@ -49,7 +48,7 @@ NEGLIGIBLE, MOST_TURNS = 1e-10, 2000
 
 
 def compute_clamp_force(supports: Supports, triple: Triple, friction: float) -> float:
-    """Return the least clamp force in N for which friction could balance every load.
+    """Return the least clamp force in N at which friction could balance every load.
 
     It is at most the force needed without friction.
 
@@ -85,12 +84,11 @@ def compute_clamp_force(supports: Supports, triple: Triple, friction: float) -> 
 def make_balance_program(
     supports: Supports, triple: Triple, friction: float, heights: Sequence[float]
 ) -> tuple[Array, Array, float]:
-    """Return (1) a matrix (7, V), (2) costs (V,), and (3) a length in
-    mm: the program of the balance of forces.
+    """Return (matrix (7, V), costs (V,), length in mm): the linear program of the balance of forces.
 
     Each of the V columns is the effect of a unit force along an edge of a friction cone. Rows: force in x, y,
-    z; moments about the part's centre divided by the length; push against what moves. The cost is 1 for the
-    clamp's edges, else 0. ``heights`` has the height in mm at which each peg presses.
+    z; moments about the part's centre divided by the length; push against the moving carrier. The cost is 1
+    for the clamp's edges, else 0. ``heights`` has the height in mm at which each peg presses.
     """
     query, fixture = supports.query, supports.fixture
     touched = TouchableFeatures.from_workpiece(query.workpiece, query.toolkit)
@@ -171,8 +169,8 @@ def yield_polygon_corners(directions: tuple[float, float]) -> Iterator[tuple[flo
 def find_least_costs(matrix: Array, costs: Array, sides: Array) -> Array:
     """Return the least costs of N programs min c . x, A x = b, x >= 0, as (N,); inf where infeasible.
 
-    ``matrix`` is A (R, V), whose rows must be of similar size; ``costs`` is c (V,) >= 0; the rows of
-    ``sides`` (N, R) are the right sides b.
+    ``matrix`` is A (R, V), whose rows must have entries of similar size; ``costs`` is c (V,) >= 0; the rows
+    of ``sides`` (N, R) are the right sides b.
     """
     out, open_ = np.full(len(sides), np.inf), np.ones(len(sides), bool)
     while open_.any():

@@ -1,8 +1,8 @@
 """A push by hand that presses a part against all of its locators.
 
 A push along a line makes three locators without friction press with forces that are linear in the push. For a
-push in a fixed direction at a point q + t e of a straight side, each of these forces is linear in t, so the
-places on the side at which the push presses all three locators are an interval. Directions are tried every
+push in a fixed direction at a point q + t e of a straight side, each of these forces is linear in t. So the
+places on the side at which the push presses all three locators form an interval. Directions are tried every
 half degree, within 60 degrees of the inward normal; points on arcs every two degrees, and corners.
 """
 
@@ -30,7 +30,7 @@ HARDER = 0.02
 
 
 def find_hand_push(segments: Sequence[Segment], touched: Array, inward: Array) -> HandPush | None:
-    """Return the push by hand whose least force on one of the three locators is largest.
+    """Return the push by hand that makes the least of the three locators' forces as large as possible.
 
     None where no push presses the part against all three.
 
@@ -104,8 +104,8 @@ def list_corners(segments: Sequence[Segment]) -> Iterator[tuple[Point, Point, Ar
 def list_best_places(
     answers: Array, start: Point, along: Point, turns: Array
 ) -> Iterator[tuple[float, float, Array]]:
-    """Yield (direction in radians, position on the stretch, the locators'
-    shares (3,)) for pushes that press all three.
+    """Yield (direction in radians, position on the stretch, the locators' shares (3,)) for pushes that press
+    all three locators.
 
     There is at most one for each direction: the position, from 0 to 1, at which the least share is largest.
 

@@ -1,8 +1,8 @@
-"""Which holes may hold a support, and which triples of them the carriers have room for.
+"""The holes that may hold a support, and the triples of them for which the carriers have room.
 
-Columns and rows count as in the planar fixture, also outside its plates. Two jaws may stand nearer together
-for supports between the pegs, so the travel of a triple may differ from the planar fixture's. Pegs and
-supports keep their places relative to the part.
+Columns and rows are counted as in the planar fixture, also beyond its plates. Two jaws may stand nearer
+together for supports between the pegs, so the travel of a triple may differ from the planar fixture's. Pegs
+and supports keep their places relative to the part.
 """
 
 from __future__ import annotations
@@ -100,10 +100,10 @@ class TripleStanding:
 
 
 def find_ends(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tuple[IntArray, IntArray]:
-    """Return (1) the first and (2) the last column or row of each of N sets, (N,) each.
+    """Return (the first, the last) column or row of each of N sets, (N,) each.
 
-    ``numbers`` (N, S) are the columns or rows of the S supports of each set, of which those count where
-    ``on`` is True. The columns or rows ``taken`` (K,) by pegs count for all sets.
+    ``numbers`` (N, S) are the columns or rows of the S supports of each set; only entries where ``on`` is
+    True count. The columns or rows ``taken`` (K,) by pegs count for all sets.
     """
     first = np.where(on, numbers, UNBOUNDED).min(axis=1)
     last = np.where(on, numbers, -UNBOUNDED).max(axis=1)
@@ -116,8 +116,8 @@ def find_ends(numbers: IntArray, on: NDArray[np.bool_], taken: IntArray) -> tupl
 class CarrierRoom:
     """The room that the carriers of a fixture leave for supports beside its pegs.
 
-    Pegs and supports of a carrier must fit its columns and rows and keep the gap. They stand nearest the
-    opening, and move outward only as far as the largest travel demands.
+    Pegs and supports of a carrier must fit its columns and rows and keep the gap. They are as near to the
+    opening as possible; they move outward only as far as the largest travel demands.
 
     Parameters
     ----------
@@ -157,7 +157,7 @@ class CarrierRoom:
         )
 
     def place_sets(self, sets: IntArray) -> TripleStanding:
-        """Return how sets of supports stand beside the pegs, clear of blocked holes.
+        """Return the places of sets of supports beside the pegs, clear of blocked holes.
 
         ``sets`` (N, S) are indices of holes.
         """
@@ -165,8 +165,8 @@ class CarrierRoom:
         return self.move_off_blocked(found, sets, at_rest) if self.has_blocked else found
 
     def find_compatible_pairs(self) -> NDArray[np.bool_]:
-        """Return a symmetric mask (H, H): True for two holes that may both
-        hold a support, blocked holes disregarded.
+        """Return a symmetric mask (H, H): True for two holes that may both hold a support, without regard to
+        blocked holes.
 
         In a set that fits all pairs are compatible; the converse does not hold.
         """
@@ -180,8 +180,8 @@ class CarrierRoom:
         return out | out.T
 
     def fit_sets(self, sets: IntArray) -> tuple[TripleStanding, Array]:
-        """Return (1) how sets (N, S) stand, blocked holes disregarded, and
-        (2) their travel nearest the opening in mm, (N,).
+        """Return (places of the sets (N, S) without regard to blocked holes, travel (N,) in mm with all pegs
+        nearest the opening).
 
         A set that does not fit does not fit with more supports either.
         """
@@ -216,8 +216,8 @@ class CarrierRoom:
         number: int,
         plate: Carrier,
     ) -> tuple[TripleStanding, Array]:
-        """Return (1) how sets stand, with the moving carrier opened no
-        wider than its travel allows; (2) their travel.
+        """Return (places of the sets with the moving carrier opened no wider than its travel allows, their
+        travel (N,)).
 
         The travel (N,) in mm is that with all pegs nearest the opening.
 
@@ -251,7 +251,8 @@ class CarrierRoom:
         return TripleStanding(fits, opened, spare), np.asarray(at_rest, np.float64)
 
     def move_off_blocked(self, found: TripleStanding, sets: IntArray, at_rest: Array) -> TripleStanding:
-        """Return how sets (N, S) stand with pegs and supports moved outward until none is in a blocked hole.
+        """Return the places of sets (N, S) whose pegs and supports are moved outward until none is in a
+        blocked hole.
 
         ``at_rest`` (N,) is the travel in mm with all pegs nearest the opening. Sets without such a place do
         not fit.
@@ -278,8 +279,8 @@ class CarrierRoom:
 
 
 def find_first_free_columns(standing: list[tuple[int, int, int]], plates: list[Carrier]) -> list[int]:
-    """Return the total numbers of columns outward at which pegs and
-    supports stand clear of blocked holes, ascending.
+    """Yield, ascending, the total numbers of columns by which pegs and supports must move outward to be clear
+    of blocked holes.
 
     ``standing`` has (index of the carrier, column, row) of each; there are two plates.
     """

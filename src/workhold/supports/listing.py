@@ -48,7 +48,7 @@ MOST_POSITIONS = 1200
 
 @define(frozen=True, eq=False)
 class SupportSearch:
-    """The search for supports, with what all fixtures of one part in one toolkit have in common.
+    """The search for supports under the fixtures of one part in one toolkit, with their common data.
 
     Parameters
     ----------
@@ -104,8 +104,8 @@ class SupportSearch:
         return ((LevelRegions.from_loops(asked.rising, asked.rising_heights), asked.head_radius),)
 
     def rank_places(self, rings: Array | None) -> RankedPlaces:
-        """Return the places of the tip in classes: wholly over material
-        that reaches down, partly so, anywhere.
+        """Return the places of the tip in classes: entirely over material that reaches down to the plate,
+        partly over it, anywhere.
 
         ``rings`` (R, 4) is the clamp's reach in the part's coordinates, see :class:`ClampPlaces`; None for no
         limit.
@@ -243,7 +243,7 @@ def make_support_pad(room: CarrierRoom, hole: int) -> SupportPad:
 
 
 def to_spatial_loads(loads: Iterable[Load | SpatialLoad], thickness: float) -> tuple[SpatialLoad, ...]:
-    """Return loads as loads in space; heights that are not given are set by the part's thickness in mm."""
+    """Return loads as loads in space; missing heights are set to the part's thickness in mm."""
     every = (load if isinstance(load, SpatialLoad) else SpatialLoad.from_planar_load(load) for load in loads)
     return tuple(load.with_height(thickness) for load in every)
 
@@ -279,7 +279,7 @@ def find_supports(
 
     Parameters
     ----------
-    fixture, query : a planar fixture, and the part and toolkit it was asked for.
+    fixture, query : a planar fixture, and the query with its part and toolkit.
     request : sizes and rules of supports and clamp.
     loads : loads; None for those of the query. Planar loads act at the top of the part.
     jaw_force : in N; None for the least one that keeps all pegs in contact.

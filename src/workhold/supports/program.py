@@ -1,20 +1,20 @@
-"""A program's effect on supports: its forces as loads in space, and keep-out zones around what it sweeps.
+"""A program's effect on supports: its forces as loads in space, and keep-out zones around the swept space.
 
-Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, what
-mills, what drills and what plunges are loads of their own, with every force that it has; where it has more
-than a few, with the largest. A path counts as the hull of its places. Arcs are taken in polygons around them,
-so that nothing is less than it is, and a force may act in any direction.
+Cutting forces are loads with heights, the thrust of drills and the pull of helices. For each tool, milling,
+drilling and plunging are separate loads, one for each different force; if these are many, one with the
+largest. A path is replaced by its convex hull, and arcs by polygons around them, so that no load is
+understated. A force may act in any direction.
 
 No pad may stand where tools sweep below the part, such as where a drill comes through. No tip may stand where
 they sweep at the heights of the clamp. Each swept piece is a zone, straight or bent, as wide as the tool with
 the clearance.
 
-Of the pieces above the part few border the places that are left. They are found on ever smaller squares of
-the face. Let c be the middle of a square and h its half diagonal. Let s(t) be the least distance of a place
-t from the paths, less the distance that has to be kept. Between two places s changes by at most their
-distance. So a square is covered by the piece nearest to c where s(c) < -h, and free where s(c) > h. All
-others are quartered. On one as small as ``FINEST`` the piece nearest to c stands for all others, once it is
-made 2 h wider. Places that are left are clear of every piece, and no place is lost that keeps 2 h more.
+Only few of the pieces above the part border the free places. They are found by a quadtree of squares on the
+face. Let c be the middle of a square and h its half diagonal. Let s(t) be the least distance of a place t
+from the paths, less the distance that has to be kept. Between two places s changes by at most their distance.
+So a square is covered by the piece nearest to c where s(c) < -h, and free where s(c) > h. All others are
+quartered. In a square as small as ``FINEST``, the piece nearest to c, widened by 2 h, replaces all others. So
+the free places are clear of every piece, and every place with 2 h more clearance is found.
 """
 
 from __future__ import annotations
@@ -56,15 +56,15 @@ FIRST = 16
 
 
 def list_acting_loads(query: Query, thickness: float) -> tuple[Load | SpatialLoad, ...]:
-    """Return the loads of a query, followed by those that its
-    program makes on a part of this thickness in mm.
+    """Return the loads of a query, followed by those that its program exerts on a part of this thickness in
+    mm.
     """
     return (*query.loads, *(() if query.program is None else make_cutting_loads(query.program, thickness)))
 
 
 def make_cutting_loads(program: Program, thickness: float) -> tuple[SpatialLoad, ...]:
-    """Return the loads in space that a program makes on a part of this
-    thickness in mm; none without cutting forces.
+    """Return the loads in space that a program exerts on a part of this thickness in mm; none without cutting
+    forces.
     """
     forces = program.forces
     if forces is None:
@@ -212,8 +212,8 @@ def list_levels(request: SupportRequest) -> tuple[float, ...]:
 def list_swept_beside_clamp(
     program: Program, levels: tuple[float, ...], tip_radius: float
 ) -> Iterator[SweptPiece]:
-    """Yield what tools sweep at the heights of the clamp on each face,
-    enlarged where the clamp is wider than its tip.
+    """Yield the space that tools sweep at the heights of the clamp on each face, enlarged if the clamp is
+    wider than its tip.
     """
     for low in levels:
         for height, share in size_clamp_pieces(low, levels[-1]):
@@ -228,7 +228,7 @@ def list_swept_beside_clamp(
 def find_zones(
     swept: SweptSpans, clearance: float, on_face: float, disc: float, face: TouchableFace, most: int
 ) -> tuple[Zone, ...]:
-    """Return zones that keep discs clear of what is swept, with as few shapes as suffice.
+    """Return zones that keep discs clear of the swept space, with as few shapes as possible.
 
     Parameters
     ----------
@@ -236,7 +236,7 @@ def find_zones(
     on_face : least distance in mm of a disc's centre from the border of the face.
     disc : radius of the discs in mm.
     face : face on which the discs lie.
-    most : number of zones above which fewer and wider ones are tried.
+    most : if there would be more zones than this, fewer and wider ones are tried.
     """
     if not len(swept) or not face.faces:
         return ()
@@ -261,8 +261,8 @@ def find_zones(
 def find_needed_spans(
     swept: SweptSpans, keep: float, on_face: float, face: TouchableFace, finest: float
 ) -> tuple[IntArray, IntArray]:
-    """Return the indices (1) of the swept spans and (2) of the filled
-    boxes that decide which places of a face are free.
+    """Return the indices (1) of the swept spans and (2) of the filled boxes that bound the free places of a
+    face.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """The places for straps: for each hole that can take a bolt, the points around it on which the tip may press.
 
-The tip stands wholly on the part's upper face and off its keep-out zones, and the part's foot lies wholly
-under the tip, so that the strap does not bend the part. The points that a strap can reach form a ring about
-the bolt; those at its least, middle and greatest radius are examined, every 30 degrees from the plate's x
-axis. A bolt is as thick as the dowels' holes are wide. It stands beside the part or in an opening of the
-part, and in no locator's hole. Where bolts have holes of their own, it stands clear of the locators.
+The tip lies entirely on the part's upper face and off its keep-out zones. The part's foot lies under the
+whole tip, so that the strap does not bend the part. The points that a strap can reach form a ring about the
+bolt; those at its least, middle and greatest radius are examined, every 30 degrees from the plate's x axis. A
+bolt has the diameter of the dowel holes. It stands beside the part or in an opening of the part, in a hole
+without a locator. If bolts have separate holes, it stands clear of the locators.
 """
 
 from __future__ import annotations
@@ -88,8 +88,7 @@ def find_top_face(workpiece: Workpiece, request: SupportRequest) -> TouchableFac
 def find_bolt_holes(
     fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, straps: StrapHardware
 ) -> tuple[IntArray, Array]:
-    """Return (1) the holes (B, 2), column and row, in which a bolt
-    stands free, and (2) their centres (B, 2) in mm.
+    """Return (the holes (B, 2), column and row, in which a bolt has room, their centres (B, 2) in mm).
 
     Only holes within a strap's reach of the part's bounding box are listed. Centres are in the plate's frame.
     """

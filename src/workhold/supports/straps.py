@@ -4,7 +4,7 @@ The force that a set of straps needs is a linear program with six equations (``s
 is a motion of the part that locators and plate allow. A motion bounds the force of every set of straps: no
 set needs less than the work of the load on this motion divided by the work that the straps of the set do on
 it per unit of force. The force of the set with the least bound is computed, which gives new motions, until no
-bound is below the least force found. For most sets no force is ever computed.
+bound is below the least force found. For most sets the force is never computed.
 
 The straps alone must press the part flat on the plate: the middle of their tips lies in the kern of the
 part's foot, which is the set of its possible centres of pressure. So straps that hold at a force hold at
@@ -82,13 +82,13 @@ NO_LOADS = "straps are chosen by the force that loads ask for: give one load or 
 
 @frozen
 class PadSizes:
-    """Sizes of supports under straps, in mm; None for those of the toolkit, or else usual ones.
+    """Sizes of supports under straps, in mm; None for the toolkit's sizes, or the usual ones.
 
     Parameters
     ----------
-    radius : of the round pads.
+    radius : radius of the round pads.
     margin : smallest distance of a pad from the border of the face that it supports.
-    height : how high the supports carry the part above the plate.
+    height : height of the supports above the plate.
     """
 
     radius: float | None = None
@@ -103,20 +103,20 @@ class StrapQuestion:
     Parameters
     ----------
     straps : number, reach, tips and rated force of the straps.
-    request : thickness of the part, and faces that tips and plate may touch; its fields for a clamp are not
+    request : thickness of the part, and faces that tips and plate may touch; its fields of a clamp are not
         used.
     loads : loads that act on the part, each by itself.
     friction : coefficients of friction by name, such as "tip" and "plate"; None for usual ones.
     safety : factor on the loads.
     weight : weight of the part in N, not multiplied by ``safety``; it acts at the middle of the foot.
     is_over_supports : whether the part lies on three supports, and each tip presses over one of them.
-    program : program whose tools must pass the straps, and press on the part where their forces are known;
+    program : program whose tools must clear the straps; their forces on the part, if known, count as loads.
         None for none.
-    given_force : force in N with which each strap presses at its tip, for the number of times that it holds the
-        loads; None where nobody says.
-    support_height : how high the supports carry the part above the plate, in mm; None where nobody says.
-    peg_height : height of the locators in mm, to warn of those that a tool of the program would hit; None where
-        it is known that all are passed.
+    given_force : given force in N of each strap at its tip, to state the safety against the loads; None if
+        not given.
+    support_height : height in mm of the supports above the plate; None if not given.
+    peg_height : height of the locators in mm, to warn of locators that a tool of the program would hit; None
+        if the tools are known to clear all of them.
     """
 
     straps: StrapHardware
@@ -133,7 +133,7 @@ class StrapQuestion:
 
     @property
     def below(self) -> str:
-        """Name of the coefficient of friction between the part and what is below it: "support" or "plate"."""
+        """Name of the coefficient of friction between the part and its rest: "support" or "plate"."""
         return "support" if self.is_over_supports else "plate"
 
     @property
@@ -197,8 +197,8 @@ def make_pads_request(
 ) -> SupportRequest:
     """Return a request for the faces of a part with the pads of supports, which keep off zones below.
 
-    ``sizes`` are given sizes of the pads; those of the toolkit, or else usual ones, take the place of what is
-    not given. Raises InputError for pads that do not fit between holes.
+    ``sizes`` are given sizes of the pads; missing ones are those of the toolkit, or else the usual ones.
+    Raises InputError for pads that do not fit between holes.
     """
     given = sizes or PadSizes()
     pads = SupportRequest.from_workpiece(
@@ -210,7 +210,7 @@ def make_pads_request(
 
 
 def make_question(query: Query) -> StrapQuestion:
-    """Return the request for straps that a query makes whose toolkit has straps.
+    """Return the request for straps that a query with straps in its toolkit makes.
 
     Tips keep off the query's keep-out zones, and so do pads of supports.
     """
@@ -237,15 +237,15 @@ def make_question(query: Query) -> StrapQuestion:
 
 
 def find_given_force(query: Query) -> float | None:
-    """Return the force in N with which a query says that each strap presses; None where it says nothing.
+    """Return the force in N that a query gives for each strap; None if it gives none.
 
-    Without straps in its toolkit the query's jaw force is that of a clamp, and says nothing of straps.
+    Without straps in its toolkit the query's jaw force is that of a clamp and does not count.
     """
     return query.jaw_force if query.toolkit.strap_set is not None else None
 
 
 def choose_support_height(query: Query, pads: PadSizes | None = None) -> float | None:
-    """Return how high supports carry the part, in mm: as given, else as the query's toolkit says, else None."""
+    """Return the height of the supports in mm: as given, else as in the query's toolkit, else None."""
     own = (query.toolkit.supports or SupportPads()).height
     return own if pads is None or pads.height is None else pads.height
 
@@ -375,7 +375,7 @@ class StrapSearch:
         return StrapPlaces(places.hole[clear], places.at[clear])
 
     def find_clear(self, tip: Array, bolt: Array) -> BoolArray:
-        """Return a mask (N,): True for straps that run into nothing of the part and that all tools pass.
+        """Return a mask (N,): True for straps that do not collide with the part and that all tools clear.
 
         ``tip`` and ``bolt`` (N, 2) are the points at which they press, and the centres of their bolts, in mm in
         the plate's frame.
@@ -444,10 +444,10 @@ class StrapSearch:
         return cuts if len(cuts) else None
 
     def find_program_need(self, grip: StrapsOnPart, is_weighed: bool = True) -> ProgramJawForce | None:
-        """Return the largest strap force that the program's tools need,
-        and at which move; None without their forces.
+        """Return the largest strap force that the program's tools need, with its move; None without their
+        forces.
 
-        ``is_weighed`` is whether the part's weight acts besides.
+        ``is_weighed`` tells whether the part's weight acts as well.
         """
         cuts, program, pose = self.cuts, self.asked.program, self.fixture.pose
         if cuts is None or program is None:
@@ -458,7 +458,8 @@ class StrapSearch:
     def add_forces(self, hold: StrappedHold, grip: StrapsOnPart) -> StrappedHold:
         """Return a hold with the forces that loads and program need of its straps.
 
-        Where a force of the straps is given, it also says how many times that force holds each of them.
+        If a force of the straps is given, the hold also has the safety of that force against each load and
+        the program.
         """
         asked = self.asked
         out = evolve(
@@ -533,7 +534,7 @@ class StrapSearch:
         """Return, for each load, the force in N that each strap on a part
         needs; None where no force holds the load.
 
-        ``less`` is a wrench (6,) that is taken from every load, such as the weight's.
+        ``less`` is a wrench (6,) that is subtracted from every load, such as the weight's.
         """
         program = MotionProgram(grip)
         out = []
@@ -551,8 +552,7 @@ class StrapSearch:
         return np.asarray(~same & (apart >= 2 * self.asked.straps.tip_radius - ALIKE))
 
     def find_best(self, cancel: Event | None = None) -> StrappedHold:
-        """Return the straps that need the least force; a hold without
-        straps where there are no places for them.
+        """Return the straps that need the least force; a hold without straps if there are no places for them.
 
         After ``cancel``, the best straps found so far.
         """
@@ -607,8 +607,8 @@ class StrapSearch:
 
     @cached_property
     def kern(self) -> Array:
-        """Sides (R, 3) of the kern of the foot: rows (a, b, c) with a x
-        + b y <= c inside, a and b a unit normal.
+        """Sides (R, 3) of the kern of the foot: rows (a, b, c) with the unit normal (a, b) and a x + b y <= c
+        inside.
 
         The kern is the set of possible centres of pressure of the foot.
         """
@@ -640,7 +640,7 @@ class SetSearch:
     Parameters
     ----------
     search : the search for straps that has the P places.
-    work : (P, M) work that a strap at each place does on each of M motions, with its friction, per N of
+    work : (P, M) work that a strap at each place does on each of M motions, friction included, per N of
         force.
     power : (M,) power, on each motion, of the load that drives it.
     least_force : least force in N found so far; inf before.
@@ -659,7 +659,7 @@ class SetSearch:
     def find_least(self, count: int, cancel: Event | None = None) -> tuple[int, ...] | None:
         """Return the indices of the places of ``count`` straps that need the least force, ascending.
 
-        None where there are no such places. Where no force is enough, the first set.
+        None if there are no such places. If no force is enough, the first set.
         """
         may = self.search.find_compatible_pairs()
         for sets in list_sets(may, count, self.can_improve):
@@ -685,8 +685,8 @@ class SetSearch:
         return out
 
     def can_improve(self, taken: Sequence[int], more: int) -> bool:
-        """Return whether a set of the places ``taken`` and ``more`` further
-        ones may need less force than the best so far.
+        """Return whether a set of the places ``taken`` and ``more`` further ones may need less force than the
+        best set so far.
         """
         if not len(self.power) or self.least_force == inf:
             return True
@@ -732,9 +732,9 @@ def list_sets(
     """Yield, in lexicographic order, arrays (N, K) of the sets of K =
     ``count`` places that may stand together.
 
-    ``may`` (P, P) says which two places may. The sets of an array have all but their last two places in
-    common. ``is_promising(taken, more)`` says whether to go on with sets that begin with ``taken`` and have
-    ``more`` further places.
+    ``may`` (P, P) tells which two places may. The sets of an array have all but their last two places in
+    common. ``is_promising(taken, more)`` tells whether to continue with sets that begin with ``taken`` and
+    have ``more`` further places.
     """
 
     def extend(taken: tuple[int, ...], free: IntArray) -> Iterator[IntArray]:

@@ -1,9 +1,9 @@
-"""Where straps may stand beside what of a solid rises above the face that they press on.
+"""Places for straps beside material of a solid that rises above the face on which they press.
 
-A strap's bar lies as high as the face under its tip, from the tip over its bolt to a heel as far behind the bolt
-as the bar is wide. Whatever of the part is higher than that face must keep clear of the bar. A bolt stands
-beside the whole part, also beside what juts out above the height at which locators touch it. Of a part from a
-drawing nothing rises.
+A strap's bar is at the height of the face under its tip. It extends from the tip over its bolt to a heel; the
+heel is as far behind the bolt as the bar is wide. Material of the part above that face must be clear of the
+bar. A bolt stands beside the whole part, also beside material that overhangs above the locators. A part from
+a drawing has no material above its upper face.
 """
 
 from __future__ import annotations
@@ -31,14 +31,15 @@ KEPT = 0.01
 def are_beside_rising(
     request: SupportRequest, pose: Pose, tip: Array, bolt: Array, heights: Array, tip_radius: float
 ) -> BoolArray:
-    """Return a mask (N,): True for straps whose bars run into nothing that rises above the face under their
+    """Return a mask (N,): True for straps whose bars are clear of all material above the face under their
     tips.
 
     Parameters
     ----------
-    request : faces of the part, and what rises above them.
+    request : faces of the part, and the regions that rise above them.
     pose : pose of the part on the plate.
-    tip, bolt : (N, 2) points at which the straps press, and centres of their bolts, in mm in the plate's frame.
+    tip, bolt : (N, 2) points at which the straps press, and centres of their bolts, in mm in the plate's
+        frame.
     heights : (N,) heights of the faces under the tips, in mm above the part's lower side.
     tip_radius : radius of the tips, and half the width of the bars, in mm.
     """
@@ -57,9 +58,9 @@ def are_beside_rising(
 def keep_off(regions: LevelRegions, height: float, starts: Array, ends: Array, radius: float) -> BoolArray:
     """Return a mask (N,): True for capsules that keep 0.01 mm, or a little less, from the regions at a height.
 
-    A capsule is all points within ``radius`` mm of the segment from ``starts[k]`` to ``ends[k]``, (N, 2). Where
-    the middle of a piece of it is farther from the regions than the radius and half the piece's length, all of
-    the piece is clear; other pieces are halved.
+    A capsule is all points within ``radius`` mm of the segment from ``starts[k]`` to ``ends[k]``, (N, 2). A
+    piece of a capsule is clear if its middle is farther from the regions than the radius plus half the
+    piece's length; other pieces are halved.
     """
     out = np.ones(len(starts), np.bool_)
     number, first, last = np.arange(len(starts)), starts, ends
@@ -76,9 +77,10 @@ def keep_off(regions: LevelRegions, height: float, starts: Array, ends: Array, r
 
 
 def are_beside_part(workpiece: Workpiece, points: Array, radius: float) -> BoolArray:
-    """Return a mask (N,): True for round bolts that run into no part of a solid at any height.
+    """Return a mask (N,): True for round bolts that are clear of a solid at all heights.
 
-    ``points`` (N, 2) are their centres in mm in the part's coordinates. Of a part from a drawing all do.
+    ``points`` (N, 2) are their centres in mm in the part's coordinates. All are True for a part from a
+    drawing.
     """
     out = np.ones(len(points), np.bool_)
     for regions in list_regions_above(workpiece):
@@ -88,7 +90,9 @@ def are_beside_part(workpiece: Workpiece, points: Array, radius: float) -> BoolA
 
 
 def list_regions_above(workpiece: Workpiece) -> Iterator[LevelRegions]:
-    """Yield the regions of a solid that are seen from above: its upper faces, and what rises above them."""
+    """Yield the regions of a solid that are visible from above: its upper faces, and the regions that rise
+    above them.
+    """
     solid = workpiece.solid
     if solid is None:
         return

@@ -2,14 +2,14 @@
 set.
 
 The part lies on three pads in holes of the plate, by the rules of ``supports.holes``, and each tip presses on
-it right over one of them. So straps alone never tip the part, and straps that hold at a force hold at every
-greater force. The finite set has every three pads that are not on one line, with every choice of the pads
-that have a strap over them. Three pads from which the part would fall before it is strapped come after those
-on which it stands.
+it directly over one of the pads. So straps alone never tip the part, and straps that hold at a force hold at
+every greater force. The finite set has all triples of pads not on one line, each with every choice of the
+pads under a strap. Three pads from which the part would fall before it is strapped come after those on which
+it stands.
 
 As for straps over the plate (``supports.straps``), a motion of the part that locators and pads allow bounds
-the force of other sets, but only of sets whose pads allow the motion, too. Motions that all pads allow come
-first, as they bound every set.
+the force of other sets. Here it bounds only sets whose pads allow the motion, too. Motions that all pads
+allow come first, since they bound every set.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def find_middle(fixture: Fixture, workpiece: Workpiece) -> Array:
 
 
 def contain_point(middle: Array, corners: Array) -> BoolArray:
-    """Return a mask (N,): True for triangles that contain a point (2,), also on a side.
+    """Return a mask (N,): True for triangles that contain a point (2,), inside or on a side.
 
     ``corners`` (N, 3, 2) are those of the triangles, in either sense of rotation.
     """
@@ -182,7 +182,7 @@ class SupportedStraps:
     search : the search for straps of the fixture.
     places : the H holes that may hold a support.
     allowed : (H, M) whether each pad allows each of the M motions found so far.
-    work : (H, M) work that a strap over each pad does on each motion, with its friction, per N of force.
+    work : (H, M) work that a strap over each pad does on each motion, friction included, per N of force.
     power : (M,) power, on each motion, of the load that drives it.
     relaxed : choices of strapped pads whose force was already computed with the part on all pads.
     """
@@ -233,8 +233,8 @@ class SupportedStraps:
 
     @cached_property
     def combinations(self) -> tuple[tuple[int, ...], ...]:
-        """Sets of pads that can have straps over them at the same time: each
-        with a bolt of its own, and tips side by side.
+        """Sets of pads that can have straps over them at the same time: with different bolts, and tips that
+        do not overlap.
         """
         count, apart = self.search.asked.straps.count, 2 * self.search.asked.straps.tip_radius
         free = [number for number in range(len(self.places)) if self.places.bolts[number]]
@@ -276,9 +276,9 @@ class SupportedStraps:
         return contain_point(middle, self.places.at[pads])
 
     def find_least(self, cancel: Event | None = None) -> StrappedTriple | None:
-        """Return the supports and straps that need the least force; None where there are no places for them.
+        """Return the supports and straps that need the least force; None if there are no places for them.
 
-        Sets on which the part stands come first. Where no force is enough, the first set.
+        Sets on which the part is stable come first. If no force is enough, the first set is returned.
         """
         pads, strapped = self.list_sets()
         stands = self.find_stable(pads)

@@ -1,9 +1,9 @@
-"""Where straps and supports may stand so that the tools of a program do not hit them.
+"""Places for straps and supports that the tools of a program do not hit.
 
 A strap's bar is as wide as its tip. It reaches from the tip over its bolt to a heel, as far behind the bolt
-as the bar is wide. The bar is an obstacle from the height of the face under its tip upward, bolt and heel at
-all heights below as well; all of them up to the straps' standout above that face. Pads are obstacles below
-the part, such as to a drill that comes through.
+as the bar is wide. All are obstacles up to the straps' standout above the face under the tip: the bar from
+that face upward, bolt and heel from the plate upward. Pads are obstacles below the part, such as to a drill
+that comes through.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def find_heels(tip: Array, bolt: Array, tip_radius: float) -> Array:
 def are_clear(
     program: Program, pose: Pose, tip: Array, bolt: Array, heights: Array, straps: StrapHardware
 ) -> BoolArray:
-    """Return a mask (N,): True for straps that all tools of a program pass without hitting them.
+    """Return a mask (N,): True for straps that all tools of a program clear.
 
     Parameters
     ----------
@@ -67,7 +67,8 @@ def move_into_part(pose: Pose, points: Array) -> Array:
 
 
 def keep_clear(swept: SweptSpans, program: Program, starts: Array, ends: Array, radius: float) -> BoolArray:
-    """Return a mask (N,): True for capsules that keep the program's clearance from what its tools sweep.
+    """Return a mask (N,): True for capsules that keep the program's clearance from the space that its tools
+    sweep.
 
     A capsule is all points within ``radius`` mm of the segment from ``starts[k]`` to ``ends[k]``, (N, 2) in
     the part's coordinates.

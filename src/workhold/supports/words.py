@@ -1,8 +1,8 @@
 """Words about a list of supports, the same wherever the list is shown, and why a list is empty.
 
-For an empty list these questions are asked in turn: whether three holes have room for a pad, whether three
-such holes fit the plates, whether their triangle is large enough for the clamp, and whether the tip may stand
-in the triangle. The first question answered with no is told in one sentence, with what would help.
+For an empty list these conditions are tested in turn: three holes have room for a pad; three such holes fit
+the plates; their triangle is large enough for the clamp; there is a place for the tip in the triangle. The
+first that fails is explained in one sentence, with a remedy.
 """
 
 from __future__ import annotations
@@ -39,12 +39,12 @@ SAME_OPENING = 1e-6
 
 
 def explain_no_set(found: Supports, unit: Unit) -> str:
-    """Return a sentence on why there is no set of three supports; lengths in the given unit."""
+    """Return a sentence that explains why there is no set of three supports; lengths in the given unit."""
     return f"No three supports hold the part with the clamp between them: {explain_reason(found, unit)}"
 
 
 def explain_reason(found: Supports, unit: Unit) -> str:
-    """Return the end of a sentence: the first obstacle to a set of three supports, and what would help."""
+    """Return the end of a sentence: the first obstacle to a set of three supports, and a remedy."""
     request, toolkit = found.request, found.query.toolkit
     turned = "" if found.query.workpiece.solid is None else "; another side up would help"
     if request.bottom is not None and not request.bottom:
@@ -102,7 +102,8 @@ def explain_reason(found: Supports, unit: Unit) -> str:
 
 
 def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
-    """Return a phrase that the space beside level faces at some heights is not known, and what would help.
+    """Return a phrase that says that the space beside level faces at some heights is not known, with a
+    remedy.
 
     ``heights`` are in mm.
     """
@@ -116,7 +117,7 @@ def describe_unclear_faces(heights: Sequence[float], unit: Unit) -> str:
 
 
 def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -> str:
-    """Return the end of a sentence: the tip fits on none of the upper faces, and what would help.
+    """Return the end of a sentence: the tip fits on none of the upper faces, and a remedy.
 
     The phrase ``turned`` is added at its end.
     """
@@ -133,7 +134,7 @@ def explain_no_place_for_tip(request: SupportRequest, turned: str, unit: Unit) -
 
 
 def explain_few_holes(found: Supports, bare: HolesUnderPart, unit: Unit) -> str:
-    """Return the end of a sentence: fewer than three holes have room for a pad, and what would help.
+    """Return the end of a sentence: fewer than three holes have room for a pad, and a remedy.
 
     ``bare`` are the holes for a pad of radius 0 without margin.
     """
@@ -193,7 +194,7 @@ def format_set_row(triple: Triple, unit: Unit, loaded: bool) -> list[str]:
 def write_listing_notes(
     found: Supports, listed: Sequence[Triple], unit: Unit, keep_off: Sequence[str]
 ) -> list[str]:
-    """Return notes about listed sets of three on what their figures do not tell, a sentence or two each.
+    """Return notes on the limits of the figures of listed sets of three, a sentence or two each.
 
     Parameters
     ----------
@@ -245,8 +246,8 @@ def name_sets(some: Sequence[int], every: Mapping[int, Triple]) -> str:
 def write_flat_faces_notes(
     workpiece: Workpiece, keep_off: Sequence[str], unit: Unit = MILLIMETRE
 ) -> list[str]:
-    """Return notes where a solid has no level face below or on top, or
-    counts as flat since no level face is known.
+    """Return notes on a solid that has no level face below or on top, or is treated as flat because no level
+    face is known.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ def format_times(times: float) -> str:
 
 
 def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> str:
-    """Return a phrase that says what the part lies on: the plate, or supports."""
+    """Return a phrase that names the part's rest: the plate, or supports."""
     if not asked.is_over_supports:
         return "the part lies on the plate"
     if not found.supports:
@@ -100,7 +100,7 @@ def stands_on_supports(found: StrappedHold, fixture: Fixture, asked: StrapQuesti
 
 
 def list_remarks(found: StrappedHold) -> list[str]:
-    """Return a sentence on the places among which the straps are the best; empty without straps."""
+    """Return a sentence on the finite set of places from which the straps were chosen; empty without straps."""
     if not found.straps:
         return []
     if found.supports:
@@ -114,7 +114,7 @@ def list_remarks(found: StrappedHold) -> list[str]:
 
 
 def describe_program_need(need: ProgramJawForce, program: Program, unit: Unit) -> str:
-    """Return a sentence on the force that a program requires of each strap, and at which line."""
+    """Return a sentence on the force of each strap that a program needs, and its line."""
     where = find_place(need, program, unit)
     if need.force is None:
         return f"No force of the straps holds the part in {where}."
@@ -130,14 +130,15 @@ def describe_program_safety(found: StrappedHold, asked: StrapQuestion, unit: Uni
 
 
 def find_place(need: ProgramJawForce, program: Program, unit: Unit) -> str:
-    """Return a phrase with the line, the tool and the cut at which a program requires the largest force."""
+    """Return a phrase with the line, the tool and the cut at which a program needs the largest force."""
     cut = find_cut_of_move(program, need.move)
     return AskedForce(need.force or 0.0, need.line, need.tool, None, cut).describe_place(unit)
 
 
 def list_hit_locators(fixture: Fixture, asked: StrapQuestion) -> list[str]:
-    """Return the names of the holes whose locators a tool of the program comes too near to; [] where none is, or
-    where it is known that all are passed.
+    """Return the names of the holes whose locators a tool of the program comes too near to.
+
+    It is [] if there are none, or if the tools are known to clear all locators.
     """
     if asked.program is None or asked.peg_height is None:
         return []
@@ -155,7 +156,7 @@ def list_hit_locators(fixture: Fixture, asked: StrapQuestion) -> list[str]:
 
 
 def name_acting(found: StrappedHold) -> str:
-    """Return what acts on the part, in words: "the loads", "the tools", or both."""
+    """Return a name for the loads on the part: "the loads", "the tools", or both."""
     names = ("the loads", bool(found.clamp_needed_each)), ("the tools", found.program_need is not None)
     return " and ".join(name for name, is_there in names if is_there)
 

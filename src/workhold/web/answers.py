@@ -93,7 +93,7 @@ def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str
 
 
 def map_segments_to_faces(workpiece: Workpiece) -> dict[int, int]:
-    """Return, by number of each segment, the number of the face that it belongs to."""
+    """Return for each segment, in order of number, the number of the face that it belongs to."""
     return {number: face.number for face in workpiece.faces for number in face.segments}
 
 
@@ -144,7 +144,8 @@ def describe_face(number: int, segment: Segment) -> dict[str, Any]:
 def describe_figures() -> list[dict[str, Any]]:
     """Return all figures of quality as plain data, those of parts that friction holds last.
 
-    "sorts" is whether a list can be sorted by the figure; a list held by friction stands in its own order.
+    "sorts" tells whether a list can be sorted by the figure; lists of parts held by friction have a fixed
+    order.
     """
     names = ("key", "words", "unit", "more_is_better", "meaning", "decimals")
     known = {figure.key for figure in FIGURES}
@@ -164,7 +165,7 @@ def describe_rows(
 ) -> list[dict[str, Any]]:
     """Return the fixtures of a table as rows of plain data, with the given ranks, one for each fixture.
 
-    ``holds`` are the holds by flat jaws or straps of the first fixtures; () for fixtures with pegs.
+    ``holds`` describes how flat jaws or straps hold the first fixtures; it is () for fixtures with pegs.
     """
     longest = find_edgeless_distance(workpiece, toolkit)
     fixtures = [make_fixture_of_row(table, toolkit, number, workpiece) for number in range(len(table))]
@@ -182,8 +183,8 @@ def describe_arrangements(toolkit: Toolkit) -> list[dict[str, str]]:
 
 
 def describe_row(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, longest: float) -> dict[str, Any]:
-    """Return a fixture as a row of a list, without its rank; holes and settings are those in the middle of
-    its plate.
+    """Return a fixture as a row of a list, without its rank; holes and settings are given for the set-up in
+    the middle of its plate.
 
     "edgeless" is True where the edge distance is ``longest`` (mm), which means that the part has no edge.
     """
@@ -259,8 +260,10 @@ def describe_straps(fixture: Fixture) -> dict[str, Any]:
 
 
 def make_row_title(fixture: Fixture, toolkit: Toolkit) -> str:
-    """Return the heading of a fixture in a list:
-    its arrangement or, between flat jaws, parallels and stop; under straps the holes of their bolts.
+    """Return the heading of a fixture in a list.
+
+    It is the fixture's arrangement; between flat jaws, the parallels and the stop; under straps, the holes of
+    the bolts.
     """
     hold = fixture.hold
     if isinstance(hold, StrappedHold):

@@ -51,7 +51,7 @@ def create_app(
     Parameters
     ----------
     limits : sizes, counts, times and memory that the server allows.
-    hosts : names by which the server may be called; by default only those of this machine.
+    hosts : host names under which the server may be addressed; by default only those of this machine.
     token : secret that every request must contain; None for none.
     origins : origins of other sites' pages that may use the server; none by default.
     """
@@ -111,7 +111,7 @@ async def redirect_to_method_page(request: Request) -> Response:
 
 
 async def send_static_file(request: Request, path: str) -> Response:
-    """Return a file of the page; status 304 where the client has it already, 404 where there is none."""
+    """Return a file of the page; status 304 if the client has it already, 404 if there is no such file."""
     file = get_state(request).files.get(path)
     if file is None:
         raise HTTPException(404, "There is no such page.")

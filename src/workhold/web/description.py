@@ -1,8 +1,8 @@
 """The OpenAPI description of the server: FastAPI's own, completed by errors, shapes of answers and examples.
 
-Answers are made from plain data and are not checked again when they are sent; tests hold them to the shapes.
-Each operation has an example, which a test tries. Answers in it are shown in part: lists by their first
-entries, objects by some of their keys.
+Answers are made from plain data and are not checked again when they are sent; tests compare them with the
+shapes. Each operation has an example, which a test tries. An example shows only part of an answer: the first
+entries of lists, some keys of objects.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ def add_example(operation: dict[str, Any], example: ApiExample) -> None:
 
 
 class AnswerShape(BaseModel):
-    """The base of the shapes: every key is named, and none is left out."""
+    """The base of the shapes: every key is declared, and every declared key is present."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -97,14 +97,14 @@ class PlaceAnswer(AnswerShape):
 
 
 class ErrorAnswer(AnswerShape):
-    """What is wrong."""
+    """A sentence that says what is wrong."""
 
     error: str = Field(description="one sentence, with the remedy")
     place: PlaceAnswer | None = Field(description="where in the drawing, if the sentence names a place")
 
 
 class JobAddress(AnswerShape):
-    """Where a job is that was begun."""
+    """The address of a job that has begun."""
 
     job: str = Field(description="its name: who knows it can see the job")
     url: str = Field(description="its address, with the version of the interface that was asked")
@@ -118,7 +118,7 @@ class ArrangementAnswer(AnswerShape):
 
 
 class JobAnswer(AnswerShape):
-    """The state of a job, as it is asked for and as its events have it."""
+    """The state of a job, in the answer to a request and in each event."""
 
     job: str
     kind: Literal["design", "explore", "family"]

@@ -42,7 +42,7 @@ PAPERS = {
 
 @add_declared_fields(OF_FAMILY, LARGEST)
 class FamilyForm(Form):
-    """Parts that are to be held in one toolkit with few set-ups.
+    """Parts to be held in one toolkit with few set-ups.
 
     ``thicknesses`` are those of drawn parts in mm, in the order of the parts, for what flat jaws grip.
     """
@@ -78,7 +78,7 @@ class FamilyForm(Form):
 
 @frozen(eq=False)
 class FoundFamily:
-    """A family with its plans, and only those fixtures of its members that the plans need.
+    """A family with its plans, and those fixtures of its members that the plans use.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def number_repeated_names(names: list[str]) -> list[str]:
 
 @frozen(eq=False)
 class FamilyPaper:
-    """An order of one of :data:`PAPERS`, for the plan with at most a number of set-ups, with a unit and a
+    """An order of one of :data:`PAPERS` for a plan with at most a given number of set-ups, with unit and
     date.
     """
 

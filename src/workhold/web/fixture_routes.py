@@ -74,7 +74,7 @@ Revision = Annotated[
 
 @add_declared_fields(list_declarations(SheetQuestion), MOST_LENGTH)
 class PaperForm(AddressForm):
-    """What is asked of a paper; lengths in the unit asked for."""
+    """The contents of a paper; lengths in the unit of the request."""
 
     unit: UnitName = "mm"
     loads: Loads = None
@@ -116,10 +116,10 @@ def find_ranked_fixture(result: Result, rank: int) -> int:
 async def find_seating(
     request: Request, name: str, rank: int, revision: int | None
 ) -> tuple[Held, Seating | HandLoading]:
-    """Return the fixture with part and toolkit, and its seating; for two clamps how it is put in by hand
-    instead.
+    """Return the fixture with part and toolkit, and its seating; for two clamps the steps of putting the part
+    in by hand instead.
 
-    It is worked out at the first call and kept with the job.
+    The seating is computed at the first call and kept with the job.
     """
     job = find_job(request, name)
     result = get_job_result(job, revision)
@@ -137,8 +137,8 @@ async def find_seating(
 async def seating(
     request: Request, name: str, rank: Rank, unit: UnitName = "mm", revision: Revision = None
 ) -> dict[str, Any]:
-    """Return how wide open the part still settles in its place,
-    and all seats of the same pegs, also in sentences.
+    """Return how far the jaws may be open so that the part still settles in its place, and all seats on the
+    same pegs, also in sentences.
     """
     held, found = await find_seating(request, name, rank, revision)
     return {"rank": rank, **describe_seating(held, found, unit)}
@@ -151,9 +151,8 @@ async def closing(
     """Return the path of part and jaws as they close without friction:
     degrees, x and y of the pose, opening; in mm.
 
-    The opening is counted from where the jaws hold the part. The ending is one of ``right``, ``same place``,
-    ``wrong``, ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs
-    up.
+    The opening is 0 where the jaws hold the part. The ending is one of ``right``, ``same place``, ``wrong``,
+    ``elsewhere``, ``stop``, ``outside`` and ``lost``. The simulation stops when the client hangs up.
     """
     held, found = await find_seating(request, name, rank, revision)
     if isinstance(found, HandLoading):
@@ -177,10 +176,10 @@ async def fixture(
     """Return the row of a fixture, its geometry in mm in the vise's frame,
     and a picture of the size asked for.
 
-    With a program, ``passing`` is the move that comes nearest to what holds the part, with line, tool and
-    distance in mm; its path is that of the tool's axis, in the part's coordinates. Between flat jaws
-    ``vise_clearance`` says in sentences what tools come nearest to. With cutting forces,
-    ``program_forces`` has the force that they ask for and the line that asks for most.
+    With a program, ``passing`` is the move that comes nearest to the fixture, with line, tool and distance in
+    mm; its path is that of the tool's axis, in the part's coordinates. Between flat jaws ``vise_clearance``
+    has sentences on what the tools come nearest to. With cutting forces, ``program_forces`` has the clamping
+    force that they need and the line that needs most.
     """
     result = get_job_result(find_job(request, name), revision)
     index = find_ranked_fixture(result, rank)
@@ -204,9 +203,9 @@ CHANGED: dict[int | str, dict[str, Any]] = {204: {"description": "The list has c
     "/small.svg", summary="A small picture to choose a fixture by", response_class=Response, responses=CHANGED
 )
 async def small(request: Request, name: str, rank: Rank, revision: Revision = None) -> Response:
-    """Return an SVG picture of the part as it lies, with the faces that are touched, and the pegs.
+    """Return an SVG picture of the part in its pose, with the touched faces and the pegs.
 
-    There is no picture (204) when the list has another revision by now.
+    The answer is 204 without a picture if the list has changed to another revision.
     """
     job = find_job(request, name)
     if revision is not None and revision != job.revision:
@@ -273,7 +272,7 @@ async def warnings(
 
 
 def make_set_up_before(request: Request, form: FirstSideForm | None) -> Before | None:
-    """Return query and fixture of the set-up of the other side; None for None.
+    """Return query and fixture of the previous set-up, on the other side of the part; None for None.
 
     The faces that it cuts are among the query's faces to avoid.
     """

@@ -1,6 +1,6 @@
-"""Tasks of workers about one fixture: papers to take away, its seating, and closings of the jaws.
+"""Tasks of workers about one fixture: files to download, its seating, and closings of the jaws.
 
-Papers are setup sheets, drawings for the CAM system and pictures.
+Files to download are called papers: setup sheets, drawings for the CAM system and pictures.
 """
 
 from __future__ import annotations
@@ -71,15 +71,15 @@ class PaperOrder:
     Parameters
     ----------
     kind : one of :data:`KINDS`.
-    result : for a sheet the whole result, as the sheet names other fixtures; else a result with this fixture
-        only.
+    result : for a sheet the whole result, since the sheet refers to other fixtures; else a result with this
+        fixture only.
     rank, count : rank of the fixture, from 1, and number of all fixtures.
     question : contents of a sheet or a set-up.
     unit : unit of lengths.
     loads : loads used instead of the result's; None for the result's.
     result_hash : hash of the result's file; None where it is not known yet.
     supports : supports and clamp on top that are asked for, and the number of the set; None for none.
-    before : set-up of the other side before this one; None for none.
+    before : previous set-up, on the part's other side; None for none.
     shape : shape of the part from its own file; None to show a prism.
     """
 
@@ -231,10 +231,11 @@ Held = tuple[Fixture, Workpiece, Toolkit]
 
 
 class ClosingForm(Form):
-    """Where the part was put, and how far the jaws are open; in mm and degrees.
+    """The place of the part and the opening of the jaws at the start, in mm and degrees.
 
-    The part is turned over (x to -x in its own frame) where that is said. The opening is counted from where
-    the jaws hold the part; it is how far a clamp is drawn back. The unit is of lengths in sentences.
+    ``turned_over`` tells that the part is turned over (x to -x in its own frame). The opening is 0 where the
+    jaws hold the part; it is the distance that a clamp is drawn back. The unit is used for lengths in
+    sentences.
     """
 
     theta_deg: Number
@@ -274,9 +275,9 @@ def make_length_unit(held: Held, unit: str) -> LengthUnit:
 
 
 def find_seating(held: Held, order: TaskContext) -> Seating | HandLoading:
-    """Return the seating of a fixture: that of the result, or else worked out here.
+    """Return the seating of a fixture, from the result if it is there, else computed now.
 
-    For two clamps, return how the part is put in by hand.
+    For two clamps, return the steps of putting the part in by hand.
     """
     from workhold.seating.solver import SeatingSolver
 
@@ -292,10 +293,10 @@ def describe_seating(held: Held, seating: Seating | HandLoading, unit: str) -> d
     only ``by_hand``.
 
     ``own`` is the index in ``seats`` of the fixture's own seat; ``nearest`` are the indices of the wrong
-    seats within reach, the one whose reading is closest to the own one first. ``clamping`` is 1 where
-    ``jaw_separation`` falls while the part is clamped, -1 where it rises. ``widest`` is how far in mm the
-    jaws open beyond where they hold the part, ``done`` a word for opened, and ``captions`` are lines of text
-    for each seat.
+    seats within reach, the one whose reading is closest to the own one first. ``clamping`` is 1 if
+    ``jaw_separation`` falls while the part is clamped, -1 if it rises. ``widest`` is the largest opening in
+    mm, counted from where the jaws hold the part. ``done`` is a word for opened, and ``captions`` are lines
+    of text for each seat.
     """
     if isinstance(seating, HandLoading):
         return {"by_hand": seating.to_fields(make_length_unit(held, unit).format_length)}

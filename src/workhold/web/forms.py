@@ -1,6 +1,4 @@
-"""The shapes of requests, checked by pydantic: those of a result file within limits, and with no key that is
-not known.
-"""
+"""The shapes of requests, checked by pydantic: those of a result file, with limits and without unknown keys."""
 
 from __future__ import annotations
 
@@ -85,7 +83,7 @@ def restore_form(is_named: bool, said: Mapping[str, Any]) -> ToolkitRequest:
 
 
 class NamedToolkitRequest(ToolkitRequest):
-    """A toolkit to compare, with what to call it."""
+    """A toolkit to compare, with a name for the table."""
 
     title: Name = ""
 
@@ -144,7 +142,7 @@ else:
 
 
 class RestrictionsForm(Form, RestrictionsPart):
-    """What is ruled out."""
+    """Restrictions on the fixtures."""
 
     avoid: list[Annotated[int, Field(ge=0, le=MOST_VERTICES)]] = Field(default=[], max_length=MOST_VERTICES)
     zones: list[LoopForm] = Field(default=[], max_length=MOST_RANGES)
@@ -153,7 +151,7 @@ class RestrictionsForm(Form, RestrictionsPart):
 
 
 class ToleranceForm(Form, TolerancePart):
-    """How far pegs and faces may be off, in mm."""
+    """Tolerances of the positions of pegs and faces, in mm."""
 
     peg: Number
     face: Number
@@ -184,7 +182,7 @@ SeveralLoads = TypeAdapter(Annotated[list[LoadForm], Field(max_length=MOST_LOADS
 
 
 def read_loads_in_address(text: str | None) -> tuple[Load, ...] | None:
-    """Return the loads that an address gives as JSON; None for None."""
+    """Return the loads given as JSON in the query of an address; None for None."""
     if text is None:
         return None
     return tuple(form.to_load() for form in parse_from_address(SeveralLoads, "loads", text))
@@ -192,7 +190,7 @@ def read_loads_in_address(text: str | None) -> tuple[Load, ...] | None:
 
 @add_declared_fields(OF_SEARCHES, LARGEST)
 class SearchForm(Form):
-    """What a search in one toolkit and a comparison of several have in common."""
+    """The common fields of a search in one toolkit and of a comparison of several."""
 
     workpiece: WorkpieceForm
     types: list[Name] | None = Field(default=None, max_length=10)
@@ -210,8 +208,8 @@ class SearchForm(Form):
     def to_query(self, toolkit: Toolkit, most_segments: int) -> Query:
         """Return the query for a toolkit.
 
-        Raises InputError for a part with more than ``most_segments`` segments, and for requirements that
-        cannot be asked.
+        Raises InputError for a part with more than ``most_segments`` segments, and for requirements that the
+        toolkit does not support.
         """
         loads = tuple(form.to_load() for form in self.loads)
         workpiece = self.workpiece.to_workpiece(most_segments)
@@ -236,7 +234,7 @@ class SearchForm(Form):
 class JobForm(SearchForm):
     """A search for every fixture or only the best.
 
-    It says, too, of how many first ones the seating is worked out, and by which rules.
+    It also has the number of first fixtures whose seating is computed, and the rules of seating.
     """
 
     toolkit: HeldIn
@@ -249,7 +247,7 @@ class JobForm(SearchForm):
 
 
 class ExploreForm(SearchForm):
-    """A comparison of toolkits; where none are given, of all that come with the program."""
+    """A comparison of toolkits; if none are given, of all that come with the program."""
 
     toolkits: list[NamedHeldIn] | None = Field(default=None, min_length=1, max_length=MOST_TOOLKITS)
 

@@ -1,7 +1,7 @@
 """Limits of the server, and the guard that stands before every request.
 
-Limits are sizes, counts, times and memory. The guard checks whose name a request calls, where it comes from
-and how much it sends, and sets the headers of answers.
+Limits are sizes, counts, times and memory. The guard checks each request's host name, origin and size, and
+sets the headers of answers.
 """
 
 from __future__ import annotations
@@ -40,17 +40,18 @@ class ServerLimits:
     uploads, client_uploads : files that may arrive at the same time, from all addresses and from one.
     segments : most segments of a part.
     searches : number of searches at the same time, each in a process of its own.
-    desks : number of processes for everything that is quick: reading files, pictures, loads.
+    desks : number of processes for quick tasks: reading files, pictures, loads.
     waiting : number of searches, and of quick tasks, that may wait for a process.
     jobs : number of unfinished searches of one address.
-    seconds : time limit of a search; what it has found by then is its result.
+    seconds : time limit of a search; its result is then what it has found so far.
     desk_seconds : time limit for reading a file, a picture and the like.
     memory_bytes, desk_memory_bytes : address space of a process that searches, and of one for quick tasks.
     fixtures : most fixtures kept of one search, the best ones.
-    kept_jobs, kept_bytes : number of searches kept, and bytes of their fixtures; those unused for longest are
-        forgotten first.
-    life_seconds : seconds after its last use until a search is forgotten.
-    left_seconds : seconds after which a job is cancelled that its client has left, where that was asked for.
+    kept_jobs, kept_bytes : number of searches kept, and bytes of their fixtures; the least recently used are
+        deleted first.
+    life_seconds : seconds after its last use until a search is deleted.
+    left_seconds : seconds after which a job is cancelled if its client has gone and the request asked for
+        this.
     streams : number of streams of events at the same time.
     connections, client_connections : connections at the same time, from all addresses and from one.
     """
@@ -118,12 +119,13 @@ COOKIE = "workhold-token"
 
 @define
 class AllowedHosts:
-    """The names by which the server may be called; another name suggests that a foreign page leads here.
+    """The host names under which the server may be addressed. Another name suggests a link from a foreign
+    page.
 
     Parameters
     ----------
     names : in small letters, without port.
-    any_address : whether any numeric address will do, as when the server listens on all of them.
+    any_address : whether any numeric address is allowed, as when the server listens on all addresses.
     """
 
     names: Collection[str] = ("localhost", "127.0.0.1", "::1")
@@ -155,7 +157,7 @@ def strip_port(host: str) -> str:
 
 @define
 class Guard:
-    """The outermost layer of the server.
+    """The outermost layer of the server: it refuses inadmissible requests.
 
     Parameters
     ----------
@@ -228,9 +230,7 @@ class Guard:
             self.arriving += Counter()
 
     def find_refusal(self, scope: Scope, headers: dict[str, str]) -> tuple[int, str] | None:
-        """Return (status, sentence) for a request that its headers make inadmissible; None for an admissible
-        one.
-        """
+        """Return (status, sentence) for a request with inadmissible headers; None for an admissible request."""
         host = headers.get("host", "")
         if not self.hosts.knows(host):
             return 400, "This server is not known by that name: use the address that it printed."

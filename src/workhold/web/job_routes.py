@@ -45,7 +45,7 @@ def find_job(request: Request, name: str) -> ServerJob:
 
 
 def get_job_result(job: ServerJob, revision: int | None = None, when_over: bool = False) -> Result:
-    """Return the result of a search.
+    """Return the result of a search's job.
 
     ``revision`` is the revision that the caller has seen, None for any; ``when_over`` refuses the result of a
     search that still runs. Answers 409 where there is no result (yet) or the revision has changed.
@@ -112,7 +112,7 @@ async def explore(request: Request, form: ExploreForm, when_left: WhenLeft = "ke
 
 @router.get("/jobs/{name}", summary="State of a job", responses=STATE)
 async def state(request: Request, name: str) -> dict[str, Any]:
-    """Return the state of a job, what it has found, and what was asked for, without the text of a program."""
+    """Return the state of a job, its findings so far, and its request without the text of a program."""
     job = find_job(request, name)
     return {**job.answer(), "request": job.request}
 
@@ -256,7 +256,7 @@ def get_capture_range(result: Result, rank: int) -> dict[str, float | None] | No
     """Return {"opening": capture opening in mm} of the fixture of a rank; None where its seating is not
     known.
 
-    The opening is None where the part is never lost, however far the jaws open.
+    The opening is None if the part returns to its place from every opening of the jaws.
     """
     if rank > len(result.seating):
         return None
@@ -265,8 +265,9 @@ def get_capture_range(result: Result, rank: int) -> dict[str, float | None] | No
 
 @router.get("/jobs/{name}/explanation", summary="Why there is no fixture")
 async def explanation(request: Request, name: str) -> dict[str, Any]:
-    """Return why a finished search found no fixture;
-    worked out once, which takes about as long as the search.
+    """Return why a finished search found no fixture.
+
+    This is computed once and takes about as long as the search.
     """
     job = find_job(request, name)
     result = get_job_result(job, when_over=True)
@@ -345,15 +346,16 @@ def get_job_family(request: Request, name: str) -> FoundFamily:
     "/families", status_code=202, summary="Search for the set-ups that hold many parts", responses=BEGUN
 )
 async def submit_family(request: Request, form: FamilyForm, when_left: WhenLeft = "keep") -> Response:
-    """Begin a search for the set-ups of a family;
-    its state is at the address in the answer, its curve at ``family`` below.
+    """Begin a search for the set-ups of a family.
+
+    Its state is at the address in the answer, its curve at the same address with ``/family`` added.
     """
     return await begin_job(request, form, when_left)
 
 
 @router.get("/jobs/{name}/family", summary="The curve of a family")
 async def family(request: Request, name: str) -> dict[str, Any]:
-    """Return the least worst loss for each number of set-ups, and the parts that nothing holds."""
+    """Return the least worst loss for each number of set-ups, and the parts that no set-up holds."""
     return get_job_family(request, name).answer()
 
 

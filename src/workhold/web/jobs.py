@@ -65,10 +65,9 @@ class ServerJob:
     address : address of the client.
     kind : "design", "explore" for a comparison of toolkits, or "family" of several parts.
     weight : estimate of the bytes of memory that the request takes.
-    stops_when_left : whether the job is cancelled once no client has asked for it or followed it for some
-        time.
+    stops_when_left : whether the job is cancelled when no client has requested or followed it for some time.
     shape : shape of the part, where its file was sent for that.
-    best : how many of the listed fixtures are known to be the best of all while the search continues.
+    best : number of listed fixtures that are already known to be the best of all, while the search continues.
     """
 
     name: str
@@ -233,7 +232,7 @@ class JobRegistry:
         return job
 
     async def stop_when_left(self, job: ServerJob) -> None:
-        """Cancel a job once no client has asked for it or followed it for ``limits.left_seconds``."""
+        """Cancel a job when no client has requested or followed it for ``limits.left_seconds``."""
         while not job.is_over:
             away = 0.0 if job.watchers else monotonic() - job.used
             if away >= self.limits.left_seconds:
@@ -242,7 +241,7 @@ class JobRegistry:
             await asyncio.sleep(self.limits.left_seconds - away)
 
     def begin(self, job: ServerJob) -> None:
-        """Note that a worker has begun with a job, and wake its watchers."""
+        """Note that a worker has begun a job, and wake its watchers."""
         job.began = monotonic()
         job.state = "running"
         job.wake_watchers()
@@ -332,7 +331,7 @@ class JobRegistry:
         Raises
         ------
         BusyError, FailedError, StoppedError
-            When it could not be explained; it may be asked for again.
+            When the computation did not finish; the caller may try again.
         """
         if job.explaining is None or (job.explaining.done() and not ended_without_error(job.explaining)):
             task = PoolTask("explanation", job.asked, self.limits.seconds, job.address)
@@ -340,7 +339,7 @@ class JobRegistry:
         return await asyncio.shield(job.explaining)
 
     def cancel(self, job: ServerJob) -> None:
-        """Ask a job that is not over to stop; what it has found is kept."""
+        """Ask a job that is not over to stop; its findings are kept."""
         if job.task is not None and not job.is_over:
             self.pool.cancel(job.task)
 
@@ -358,7 +357,7 @@ class JobRegistry:
         self.free_memory()
 
     def make_room(self) -> None:
-        """Forget jobs whose life is over and, where too much is kept, those unused for longest."""
+        """Delete jobs past their lifetime and, if too much is kept, the least recently used ones."""
         now = monotonic()
         for job in [job for job in self.by_name.values() if now - job.used > self.limits.life_seconds]:
             self.delete(job.name)

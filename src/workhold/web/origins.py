@@ -1,7 +1,7 @@
 """Pages of other sites that may use the server from a browser: none, unless their origins are named.
 
 A browser sends the origin of a page with a request to another site, and hands the answer to the page only
-where the answer names that origin. Before a request that is not a plain one it asks whether it may (a
+where the answer names that origin. Before a request that is not a simple one, it asks for permission (a
 preflight): see the Fetch standard, section 3.2, *CORS protocol*.
 """
 

@@ -84,7 +84,7 @@ OF_READING = list_declarations(ReadingQuestion)
 
 @add_declared_fields(OF_READING, MOST_LENGTH)
 class UploadForm(AddressForm):
-    """How a file that is sent is to be read; lengths in mm."""
+    """Options for reading a file that is sent; lengths in mm."""
 
     part_number: str | None = Field(
         default=None, max_length=200, description="number of a part, or number or name of a solid"
@@ -114,7 +114,7 @@ OF_ALL_FILES = ("unit", "part_number", "layers", "join_tolerance")
 
 
 async def collect_upload(request: Request, asked: Annotated[UploadForm, Query()]) -> UploadedPart:
-    """Return the file that is sent, with its name and those reading options that apply to its kind."""
+    """Return the file that is sent, with its name and the reading options for its kind."""
     content = await request.body()
     name = clean_file_name(request.headers.get("x-filename", ""))
     given = asked.model_dump(exclude_none=True, exclude={"heights"})
@@ -132,7 +132,7 @@ Sent = Annotated[UploadedPart, Depends(collect_upload)]
 
 @router.post("/parts", summary="Read a part from a file", openapi_extra=FILE)
 async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
-    """Return the part that is read from the body, a file as it is: DXF, SVG, JSON, or STEP where installed.
+    """Return the part read from the body, which is a file: DXF, SVG, JSON, or STEP where installed.
 
     Its name is in the header X-Filename.
     """
@@ -142,7 +142,7 @@ async def read_part(request: Request, upload: Sent) -> dict[str, Any]:
 
 @router.post("/parts/survey", summary="See what a file holds and leaves open", openapi_extra=FILE)
 async def survey_part(request: Request, upload: Sent) -> dict[str, Any]:
-    """Return the part if it can be read, else why not and what is asked; and all that is drawn.
+    """Return the part if it can be read, else the reason and the questions to ask; and all drawn lines.
 
     The file is sent as to read a part.
     """
@@ -179,7 +179,7 @@ def clean_file_name(header: str) -> str:
 
 @router.post("/parts/check", summary="Check a part that was drawn by hand")
 async def check_part(request: Request, form: WorkpieceForm) -> dict[str, Any]:
-    """Return the part, or what is wrong with it and where."""
+    """Return the part, or a sentence on its fault and the place of the fault."""
     state = get_state(request)
     answer: dict[str, Any] = await run_at_desk(request, "check_part", (form, state.limits.segments))
     return answer
@@ -198,8 +198,8 @@ async def lesson(request: Request, form: WorkpieceForm) -> dict[str, Any]:
 
 @router.post("/programs", summary="See what a program of the machine does")
 async def program(request: Request, form: ReadProgramForm) -> dict[str, Any]:
-    """Return the tools with their lines, the box of their tips,
-    notes on how it was read, and its paths to draw.
+    """Return the tools with their lines, the bounding box of their tips, notes on how the program was read,
+    and its paths to draw.
 
     Paths are SVG path data in tenths of mm, y downward, by tool, kind and level of height. ``height`` and
     ``peg_height`` beside the program are those of the part's solid.
@@ -218,7 +218,7 @@ async def toolkits() -> list[dict[str, Any]]:
 
 @router.get("/questions", summary="What is asked of a search and of a sheet")
 async def questions() -> dict[str, list[dict[str, Any]]]:
-    """Return the fields of a search and of a sheet that the page shows, in mm and N, with what each means."""
+    """Return the fields of a search and of a sheet that the page shows, in mm and N, with their meanings."""
     from workhold.web.toolkits import describe_questions
 
     return describe_questions()
@@ -226,7 +226,7 @@ async def questions() -> dict[str, list[dict[str, Any]]]:
 
 @router.get("/presets", summary="The toolkits that come with the program")
 async def presets() -> list[dict[str, Any]]:
-    """Return the toolkits that people own, by name; lengths in mm."""
+    """Return the preset toolkits by name; lengths in mm."""
     from workhold.files.toolkit_file import list_preset_names, load_preset
     from workhold.web.toolkits import describe_toolkit
 

@@ -1,7 +1,7 @@
-"""Tasks of the workers about parts: to read and describe what was sent, and to find the shape of a part.
+"""Tasks of the workers about parts: read and describe a part that was sent, and find the shape of a part.
 
-A request for a search has an outline and the heights of its faces, not a shape. So that bodies show the
-shape, the STEP file is sent once more, and what was made of it stays with the job.
+A request for a search has an outline and the heights of its faces, not a shape. So that bodies can show the
+shape, the STEP file is sent once more, and the shape found in it is kept with the job.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def read_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
 
 
 def survey_part(upload: UploadedPart, order: TaskContext) -> dict[str, Any]:
-    """Return what a sent file holds and what has to be asked, and the part if it can be read, as plain data."""
+    """Return the content of a sent file, the questions to ask, and the part if it can be read, as plain data."""
     from workhold.files.part.survey import survey_part_file
 
     with write_sent_file(upload) as path:
@@ -148,8 +148,7 @@ def remove_path(sentence: str, path: Path) -> str:
 def describe_uploaded_part(upload: UploadedPart, path: Path, loaded: LoadedPart) -> dict[str, Any]:
     """Return a part that was read from a sent file as plain data.
 
-    It is named after the file where it has no name of its own. Raises InputError for more segments than this
-    server takes.
+    A part without a name is named after the file. Raises InputError for more segments than this server takes.
     """
     from workhold.web.answers import describe_part
     from workhold.web.request_forms import make_checked_part
@@ -225,9 +224,9 @@ def describe_strokes(chains: Iterable[Chain]) -> list[list[list[float]]]:
 
 
 def describe_survey(seen: DrawingSurvey, part: dict[str, Any] | None, refusal: str) -> dict[str, Any]:
-    """Return what a file holds, and what has to be asked before its part can be read, as plain data.
+    """Return the content of a file, and the questions to ask before its part can be read, as plain data.
 
-    Strokes and loops have rows of x, y in mm and bulge. ``heights`` are the outlines that pegs of other
+    Strokes and loops have rows of x, y in mm and bulge. ``heights`` are the outlines that pegs at other
     heights meet on a solid, and ``solids`` the solids in the file with their names.
     """
     from workhold.web.answers import find_first_place

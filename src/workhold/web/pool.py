@@ -2,7 +2,7 @@
 
 Glossary
 --------
-task : something a worker does, by name, with a time limit.
+task : a job for a worker: a function's name, its argument, and a time limit.
 client : the address that asks for a task; clients take turns, and none gets all the workers.
 slot : a place for one worker; a worker that dies is replaced in its slot.
 """
@@ -63,7 +63,8 @@ class PoolTask:
     payload : argument of the task; must be picklable.
     seconds : time limit once it has begun.
     client : address of the client who asked for it.
-    stops_well : whether the task returns what it has when asked to stop; if not, its worker is ended at once.
+    stops_well : whether the task, when asked to stop, returns its findings so far; if not, its worker is
+        ended at once.
     report : called with each value that the worker sends before the task is done.
     begun : called when a worker begins with the task.
     """
@@ -211,7 +212,7 @@ class WorkerPool:
             self.waiting.pop().settle(error=FailedError(sentence))
 
     async def run(self, task: PoolTask) -> Any:
-        """Return the outcome of a task, which is run when it is its client's turn.
+        """Run a task when it is its client's turn, and return the outcome.
 
         If the caller is cancelled, so is the task.
 
@@ -220,7 +221,7 @@ class WorkerPool:
         BusyError
             When too many tasks wait.
         InputError
-            When the worker refuses what it was given.
+            When the worker refuses the task's input.
         StoppedError
             When the task was asked to stop and has no outcome.
         FailedError
@@ -245,9 +246,9 @@ class WorkerPool:
     def choose_next_task(self) -> PoolTask | None:
         """Return the next task to run, without removing it from those waiting; None where none may run now.
 
-        It belongs to the client with the fewest workers and, among equals, with the oldest last turn. Where
-        there are several workers, one is kept free of any single client, so that other clients need not wait
-        for its searches.
+        It belongs to the client with the fewest workers and, among equals, with the oldest last turn. If
+        there are several workers, no single client may occupy all of them, so that other clients need not
+        wait for its searches.
         """
         most = max(self.size - 1, 1)
         may = [task for task in self.waiting if self.running[task.client] < most]
@@ -258,7 +259,7 @@ class WorkerPool:
     async def wait_for_task(self) -> PoolTask:
         """Wait for a task that may run, remove it from those waiting and return it.
 
-        From then on one worker more counts as its client's.
+        From then on it counts as one more worker of its client.
         """
         while (task := self.choose_next_task()) is None:
             self.bell.clear()
@@ -364,11 +365,10 @@ class WorkerPool:
 
 
 async def wait_for_first(*waits: Any, timeout: float | None = None) -> Any:
-    """Wait until one of several coroutines is done or the time is up; return the first one's value if it is
-    done.
+    """Wait until one of several coroutines is done or the time is up. Return the value of ``waits[0]`` if
+    that is done, else None.
 
-    ``waits[0]`` is the first one. Return None where it is not done. Coroutines that are not done are
-    cancelled.
+    Coroutines that are not done are cancelled.
     """
     tasks = [asyncio.ensure_future(wait) for wait in waits]
     try:

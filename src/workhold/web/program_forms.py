@@ -1,4 +1,4 @@
-"""A program of the machine in a request, with its table of tools, and what the server answers about it."""
+"""A program of the machine in a request, with its table of tools, and the server's answers about it."""
 
 from __future__ import annotations
 
@@ -57,26 +57,28 @@ class ToolTableForm(Form):
 
 @add_declared_fields(list_declarations(CuttingQuestion), LARGEST)
 class CuttingForm(Form):
-    """How tools cut of which the table does not say it: a force in N, a power in kW, or a material."""
+    """How tools cut that the table does not describe: a force in N, a power in kW, or a material."""
 
     material: Name | None = None
 
 
 @add_declared_fields(list_declarations(StockQuestion), LARGEST)
 class StockForm(Form):
-    """What the part is cut from: its outline or the block around it, with so much around and on top."""
+    """The stock that the part is cut from: the outline or the block around it, with allowances around and on
+    top.
+    """
 
 
 @add_declared_fields(OF_PROGRAM, LARGEST)
 class ProgramForm(Form):
-    """A program (G-code) whose tools keep clear of all that holds the part; lengths in mm.
+    """A program (G-code) whose tools keep clear of everything that holds the part; lengths in mm.
 
-    Without a table of tools, what the program's comments say of them is read. ``zero`` is where its X0 Y0 is
-    on the part. ``z_zero`` is where its Z0 is, a height above the part's lower side. Of a solid both heights
-    are known, ``thickness`` and ``peg_height``, up to which pegs, clamps and walls reach. ``start`` is where
-    the tip is at the start, from the program's own zero, where the program does not say it. ``whole_numbers``
-    is what lengths without a decimal point count: thousandths are 0.001 mm or 0.0001 inch. With ``cutting``, or
-    a table that says how tools cut, they press on the part where they meet the ``stock``.
+    Without a table of tools, the program's comments on its tools are used. ``zero`` is the point of the part
+    at the program's X0 Y0. ``z_zero`` is the height of its Z0 above the part's lower side. ``thickness`` and
+    ``peg_height``, up to which pegs, clamps and walls extend, are known for a solid. ``start`` is the tip's
+    position at the start, from the program's own zero, if the program does not give it. ``whole_numbers`` is
+    the unit of lengths without a decimal point: thousandths are 0.001 mm or 0.0001 inch. With ``cutting``, or
+    a table with cutting data, tools press on the part where they meet the ``stock``.
     """
 
     model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
@@ -98,7 +100,7 @@ class ProgramForm(Form):
 
         Parameters
         ----------
-        solid : of the part, for its heights; None for a part of a drawing.
+        solid : solid of the part, for its heights; None for a part from a drawing.
 
         Raises
         ------
@@ -118,7 +120,7 @@ class ProgramForm(Form):
 
 
 class ReadProgramForm(Form):
-    """A program to be looked at, and the heights of the part's solid, if it has one."""
+    """A program to be shown, and the heights of the part's solid, if it has one."""
 
     program: ProgramForm
     height: Thick | None = None
@@ -176,7 +178,7 @@ def rename_files_in_sentence(sentence: str, names: Mapping[str, str]) -> str:
 
 
 def look_at_program(question: ReadProgramForm, order: TaskContext) -> dict[str, Any]:
-    """Return what was understood of a program as plain data: its tools, box, notes, and the paths to draw.
+    """Return a program, as it was read, as plain data: tools, bounding box, notes, and paths to draw.
 
     Heights are in mm above the part's lower side. The paths are SVG path data in tenths of mm, y downward.
     Each has the index of its tool, its kind, and for cutting moves its level of height from 0.
@@ -251,8 +253,8 @@ def describe_clearance(result: Any, index: int) -> dict[str, Any] | None:
 
 
 def describe_vise_clearance(result: Any, index: int) -> list[str]:
-    """Return sentences on how far tools come through a part between flat jaws, and what they come nearest to;
-    [] for other fixtures.
+    """Return sentences on how far tools cut through a part between flat jaws, and on the body that they come
+    nearest to; [] for other fixtures.
     """
     from workhold.statics.jaw_clearance import list_vise_sentences
 
@@ -260,9 +262,7 @@ def describe_vise_clearance(result: Any, index: int) -> list[str]:
 
 
 def describe_forces(result: Any, index: int) -> dict[str, Any] | None:
-    """Return which forces the tools of a result's program need of a fixture, in N and in sentences; None
-    without forces.
-    """
+    """Return the clamping forces that the program's tools need, in N and in sentences; None without forces."""
     from workhold.statics.jaw_program import describe_asked_force
     from workhold.statics.program_forces import find_cutting_need
     from workhold.supports.words_of_straps import describe_program_need

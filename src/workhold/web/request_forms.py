@@ -1,4 +1,4 @@
-"""Requests that send a part or ask for supports, checked by pydantic, and what every request has in common.
+"""Requests that send a part or ask for supports, checked by pydantic, and the base of all requests.
 
 A part is sent as an outline or a solid, with outlines of carriers' own heights. Lengths are in mm.
 """
@@ -92,15 +92,15 @@ EXAMPLE: dict[str, Any] = {
 class Form(BaseModel):
     """The base of all requests.
 
-    Keys that are not known are refused. So are numbers written as text, and numbers that are not finite.
-    What is too long or too many is refused as well, and the sentence says how much is taken.
+    It refuses unknown keys, numbers written as text, and numbers that are not finite. It refuses text that is
+    too long and lists with too many entries; the sentence then names the limit.
     """
 
     model_config = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 
 class AddressForm(BaseModel):
-    """The base of what stands behind an address as its query, text that stands for numbers."""
+    """The base of values in the query of an address, where numbers are text."""
 
     model_config = ConfigDict(allow_inf_nan=False)
 
@@ -183,7 +183,7 @@ def count_most_vertices(data: Any) -> int:
 
 
 class SolidForm(Form):
-    """How the solid of an outline stands, and the heights at which each segment is touched; lengths in mm."""
+    """The position of an outline's solid, and the heights at which each segment is touched; lengths in mm."""
 
     axis: Literal["x", "y", "z", "-x", "-y", "-z"]
     height: Annotated[float, Field(gt=0, le=LARGEST)]
@@ -204,7 +204,7 @@ class SolidForm(Form):
 
 
 class OwnOutlineForm(Form):
-    """What a carrier meets that touches between two heights of its own, as a result file has it."""
+    """The outline met by a carrier that touches between two heights of its own, in the form of a result file."""
 
     heights: Point
     loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
@@ -214,7 +214,9 @@ class OwnOutlineForm(Form):
 
 
 class WorkpieceForm(Form):
-    """A part; lengths in mm. Of a solid ``outlines`` are by role those of carriers with own heights."""
+    """A part; lengths in mm. ``outlines`` of a solid are, by role, those met by carriers with heights of
+    their own.
+    """
 
     name: Name = "part"
     loops: Annotated[list[LoopForm], Field(min_length=1, max_length=MOST_VERTICES)]
@@ -244,7 +246,7 @@ def make_checked_part(
     departure: float = 0.0,
     solid: SolidOutline | None = None,
 ) -> Workpiece:
-    """Return a part made of loops in mm; ``departure`` in mm is how far they may be from what was drawn.
+    """Return a part made of loops in mm; ``departure`` in mm bounds how far they are from the drawn curves.
 
     Raises InputError for more segments than ``most_segments``.
     """
@@ -264,8 +266,8 @@ def refuse_many(count: int, most: int) -> None:
 
 @contextmanager
 def explain_number_errors() -> Iterator[None]:
-    """Turn arithmetic and value errors within the block into an InputError: numbers are too large or too
-    small.
+    """Turn arithmetic and value errors within the block into an InputError that says that numbers are too
+    large or too small.
     """
     try:
         yield
@@ -302,7 +304,7 @@ def read_heights_in_address(text: str | None) -> dict[str, tuple[float, float]] 
 class SpatialLoadForm(Form):
     """A load in space, in N, mm, degrees and N mm; without heights it acts at the part's upper side.
 
-    ``axial`` is the force downward, negative where a tool pulls; ``tilt`` are the moments about x and y.
+    ``axial`` is the force downward, negative for a tool that pulls; ``tilt`` are the moments about x and y.
     """
 
     name: Name = ""
@@ -321,11 +323,11 @@ class SpatialLoadForm(Form):
 
 @add_declared_fields(OF_HARDWARE, LARGEST)
 class SupportsForm(Form):
-    """What supports and the clamp on top are, and what acts on the part.
+    """The sizes of supports and of the clamp on top, and the loads on the part.
 
-    Of a solid the thickness, the level faces and the heights of its walls are known. What is left out is as
-    usual. ``bottom_zones`` keep pads off, ``top_zones`` the clamp. Loads are those of the search where none
-    are given.
+    The thickness, the level faces and the heights of the walls are known for a solid. Missing fields have
+    their usual values. ``bottom_zones`` keep pads off, ``top_zones`` the clamp. Without loads here, those of
+    the search are used.
     """
 
     model_config = ConfigDict(json_schema_extra={"examples": [EXAMPLE]})
@@ -343,13 +345,13 @@ class SupportsForm(Form):
 
 
 class ChosenSupportsForm(SupportsForm):
-    """One of the sets of three that are answered to the same request, from 1."""
+    """The number, from 1, of a set of three among the answers to the same request."""
 
     chosen: Annotated[int, Field(ge=1, le=MOST_SETS)] = 1
 
 
 class FirstSideForm(Form):
-    """The set-up before: a fixture of another job, and which faces of its part it cuts."""
+    """The previous set-up: a fixture of another job, and the faces that it cuts."""
 
     job: Name
     rank: Annotated[int, Field(ge=1, le=10**9)]

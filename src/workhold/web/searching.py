@@ -43,7 +43,7 @@ TICK = 0.05
 
 @frozen(eq=False)
 class AskedQueries:
-    """Queries of a job: pickled where they are made, unpickled by the worker that searches.
+    """Queries of a job: pickled by the process that makes them, unpickled by the worker that searches.
 
     Parameters
     ----------

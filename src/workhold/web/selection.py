@@ -30,9 +30,8 @@ class ListSelection:
     face : only fixtures that touch this face.
     angle : only fixtures whose part's angle lies in this range (from, to), in degrees, counter-clockwise from
         the first to the second.
-    together : of fixtures that are alike (``listing.identity``) list only the first.
-    unfit : list also fixtures that are unfit for a workshop; where there are only such, they are listed
-        anyway.
+    together : list only the first of fixtures that are alike (``listing.identity``).
+    unfit : also list fixtures that are unfit for a workshop; if there are no others, they are listed anyway.
     """
 
     sort: str = "rank"
@@ -44,7 +43,7 @@ class ListSelection:
     unfit: bool = True
 
     def choose_entries(self, result: Result) -> ShownEntries:
-        """Return the chosen fixtures of a result in order, each with the number of those like it that are
+        """Return the chosen fixtures of a result in order, each with the number of similar fixtures that are
         left out.
         """
         found = self.choose_indices(result.table, result.toolkit)

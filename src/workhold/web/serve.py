@@ -32,9 +32,9 @@ TERMINATED = 143
 
 
 class PatientProtocol(H11Protocol):
-    """HTTP protocol that drops clients who send no request in time, or who open too many connections.
+    """HTTP protocol that drops clients who send no request in time or open too many connections.
 
-    Each server makes a subclass of its own with these attributes.
+    Each server makes its own subclass with these attributes.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class PatientProtocol(H11Protocol):
         self.watch()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Count the connection no longer, and stop its timer."""
+        """Remove a closed connection from the count, and stop its timer."""
         if self.header_timer is not None:
             self.header_timer.cancel()
         self.open_connections[self.peer] -= 1
@@ -92,7 +92,7 @@ class PatientProtocol(H11Protocol):
 class Server(uvicorn.Server):
     """A uvicorn server that reports when it listens, and notes by which signal it was stopped.
 
-    uvicorn itself would raise that signal again.
+    uvicorn by itself would raise that signal again.
     """
 
     def __init__(self, config: uvicorn.Config, listening: Callable[[], None]) -> None:
@@ -101,7 +101,7 @@ class Server(uvicorn.Server):
         self.stopped_by: int | None = None
 
     def handle_exit(self, sig: int, frame: FrameType | None) -> None:
-        """Stop in order on the first signal, at once on the second."""
+        """Stop gracefully on the first signal, at once on the second."""
         self.force_exit = self.should_exit
         self.should_exit = True
         self.stopped_by = sig
@@ -118,7 +118,7 @@ class Server(uvicorn.Server):
             late.cancel()
 
     async def let_go(self) -> None:
-        """Close the connections that are left after :data:`LAST_SECONDS`."""
+        """Close the connections that are still open after :data:`LAST_SECONDS`."""
         await asyncio.sleep(LAST_SECONDS)
         for connection in list(self.server_state.connections):
             connection.transport.abort()

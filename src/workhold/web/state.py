@@ -1,6 +1,6 @@
-"""State that the routes of one server share: its workers, its jobs and the page's files.
+"""The state shared by the routes of one server: its workers, its jobs and the page's files.
 
-The files are read once into a table; no name in a request is ever looked up anywhere else.
+The files are read once into a table; names in requests are looked up only there.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def get_client_address(request: Request) -> str:
 async def run_at_desk(request: Request, name: str, payload: Any, seconds: float | None = None) -> Any:
     """Return the outcome of a quick task done by a worker.
 
-    The task may take ``seconds``; for None the usual time of quick tasks. For errors see
+    ``seconds`` is the time limit; None for that of quick tasks. For errors see
     :meth:`workhold.web.pool.WorkerPool.run`.
     """
     state = get_state(request)
@@ -149,8 +149,7 @@ async def run_at_desk_while_connected(request: Request, name: str, payload: Any)
     """Return the outcome of a quick task done by a worker; the task is asked to stop when the client hangs
     up.
 
-    The task must end by itself when asked to stop. Raises StoppedError when the client is gone, though nobody
-    receives it.
+    The task must end by itself when asked to stop. Raises StoppedError when the client is gone.
     """
     state = get_state(request)
     task = PoolTask(name, payload, state.limits.desk_seconds, get_client_address(request), stops_well=True)
@@ -173,8 +172,8 @@ AT_ONCE = 1 << 15
 class CheckedRoute(APIRoute):
     """A route whose larger requests are checked by a worker first.
 
-    Checking a request with hundreds of thousands of faults takes seconds, in which the server could not
-    answer anybody.
+    Checking a request with hundreds of thousands of faults takes seconds. Meanwhile the server itself could
+    not answer.
     """
 
     def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
@@ -194,9 +193,7 @@ class CheckedRoute(APIRoute):
         return handle_checked_request
 
     def find_form(self) -> type[Form] | None:
-        """Return the form of the route's requests; None where they have no body, or the bytes of a file as
-        their body.
-        """
+        """Return the form of the route's requests; None if their body is empty or the bytes of a file."""
         kinds = get_type_hints(self.endpoint).values()
         return next((kind for kind in kinds if isinstance(kind, type) and issubclass(kind, Form)), None)
 

@@ -3,7 +3,7 @@
 Glossary
 --------
 set : three supports with the clamp over them.
-box : what of a body shows from the front and from the right, as its extents in mm in the toolkit's frame.
+box : the extents of a body in mm in the toolkit's frame, to draw it from the front and from the right.
 """
 
 from __future__ import annotations
@@ -86,8 +86,8 @@ def choose_supports(asked: SupportsOrder, number: int) -> ChosenSupports | None:
 def describe_supports(found: Supports, unit: str) -> dict[str, Any]:
     """Return the best sets as plain data; places are in mm in the toolkit's frame.
 
-    ``positions`` is the number of holes that may hold a support, ``count`` that of sets, None where not all
-    were looked at. ``bands`` are the heights at which each peg may press. ``notes`` are sentences with
+    ``positions`` is the number of holes that may hold a support, ``count`` the number of sets, None if not
+    all were examined. ``bands`` are the heights at which each peg may press. ``notes`` are sentences with
     lengths in ``unit``.
     """
     request, listed = found.request, found.triples
@@ -111,9 +111,9 @@ def describe_supports(found: Supports, unit: str) -> dict[str, Any]:
 def describe_set(found: Supports, triple: Triple) -> dict[str, Any]:
     """Return one set of three as plain data; forces are None without loads.
 
-    ``travel`` is the opening of the jaws where the set needs more than the fixture alone, else None.
+    ``travel`` is the jaw opening that the set needs if it is more than the fixture alone needs, else None.
     ``nearest`` is the point of the triangle's border that is nearest to the clamp. ``built`` has the holes of
-    pegs and supports in plates that have them all, as on the sheet; None where these are the holes shown.
+    pegs and supports in plates with enough holes, as on the sheet; None if these are the holes shown.
     """
     fixture, clamp, loaded = found.fixture, triple.clamp, bool(found.loads)
     corners = np.array([(pad.x, pad.y) for pad in triple.supports])
@@ -156,9 +156,9 @@ def list_standing_holes(found: Supports, triple: Triple) -> tuple[list[str], lis
 
 
 def describe_built_holes(found: Supports, triple: Triple) -> dict[str, list[str]] | None:
-    """Return the holes in which a set is built, where they differ from those on the page.
+    """Return the holes in which a set is built.
 
-    Return None where they do not differ, or where the supports do not fit into the plate's holes.
+    Returns None if they are those on the page, or if the supports do not fit into the plate's holes.
     """
     query = found.query
     start = find_move_to_middle(found.fixture, query.toolkit, query.workpiece)
@@ -194,7 +194,7 @@ def list_support_notes(found: Supports, unit: str) -> list[str]:
 def list_boxes(found: Supports, triple: Triple, sizes: BodySizes) -> Iterator[dict[str, Any]]:
     """Yield the box of each slab of each body of a fixture on a set of supports.
 
-    Nothing is yielded where pegs have radius 0, and so no body.
+    Yields nothing for pegs of radius 0, which have no body.
     """
     try:
         bodies = list_bodies_on_supports(found, triple, found.fixture, triple.supports, sizes)

@@ -54,9 +54,9 @@ def warm_up(kind: str) -> None:
 
 
 def explore_toolkits(payload: AskedQueries, order: TaskContext) -> None:
-    """Answer the queries one after the other.
+    """Search with each query, one after the other.
 
-    Each answer is reported as ("row", row), progress as ("progress", fraction, found).
+    Each outcome is reported as ("row", row), progress as ("progress", fraction, found).
     """
     from workhold.files.result.writer import make_toolkit_fields
     from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
@@ -108,7 +108,7 @@ def check_job(payload: tuple[JobForm | ExploreForm | FamilyForm, int], order: Ta
 
 
 def make_lesson(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[str, Any]:
-    """Return as plain data what the page on the method shows of a part.
+    """Return as plain data what the page on the method shows of a part: features and Type I fixtures.
 
     The payload is (form of the part, most segments).
     """
@@ -121,7 +121,7 @@ def make_lesson(payload: tuple[WorkpieceForm, int], order: TaskContext) -> dict[
 def compute_loads(
     payload: tuple[Fixture, Workpiece, Toolkit, LoadsForm], order: TaskContext
 ) -> list[dict[str, Any]]:
-    """Return as plain data what each load of a form does to a fixture.
+    """Return as plain data the effect of each load of a form on a fixture.
 
     The payload is (fixture, part, toolkit, form).
     """

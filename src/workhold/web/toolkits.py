@@ -1,6 +1,6 @@
 """The kinds of toolkits as the page shows them: their names, and the fields of their forms.
 
-The page draws its fields from this alone, which comes from the data of the kinds.
+The page draws its fields from this data alone, which is made from the data of the kinds.
 
 Glossary
 --------
@@ -41,9 +41,11 @@ PAGE_FORMS: Mapping[str, str] = {"flat": "length", "heights": "span"}
 
 @frozen
 class PageField:
-    """A field of the page; :class:`workhold.asking.declaring.PageLabel` explains what the declaration lacks.
+    """A field of the page. :class:`workhold.asking.declaring.PageLabel` explains the attributes that the
+    declaration does not have.
 
-    Fields of hardware stand in a ``table`` of the toolkit, those of a question in one of its name.
+    A field of hardware is in a ``table`` of the toolkit, a field of a question in one named after the
+    question.
     """
 
     name: str
@@ -60,7 +62,7 @@ class PageField:
 def list_page_fields(row: Declaration, table: str | None = None) -> Iterator[PageField]:
     """Yield a field of the page for each label of a declared field.
 
-    ``table`` is the name of the table that the field stands in.
+    ``table`` is the name of the field's table.
     """
     for one in row.labels:
         choosing = "several" if one.several else "one"
@@ -128,9 +130,7 @@ class DescribedToolkit:
 
 
 def describe_questions() -> dict[str, list[dict[str, Any]]]:
-    """Return the fields that the page shows of restrictions,
-    search and sheet as plain data, each with section and help.
-    """
+    """Return the page's fields of restrictions, search and sheet as plain data, each with section and help."""
     questions = {"restrictions": RestrictionQuestion, "search": SearchQuestion, "sheet": SheetQuestion}
     return {
         name: [
@@ -143,7 +143,7 @@ def describe_questions() -> dict[str, list[dict[str, Any]]]:
 
 
 def describe_hardware() -> list[dict[str, Any]]:
-    """Return the fields that the page shows of supports, clamp and other hardware, as plain data."""
+    """Return the page's fields of supports, clamp and other hardware, as plain data."""
     return [
         {
             "name": name,

@@ -3,8 +3,8 @@
 It is started anew, not forked, so that it shares nothing with the server. Its kernels are loaded before it
 reports that it is ready. When the server ends, the pipe ends and so does the worker.
 
-What tasks write for a time stands in a folder of the worker's own. Who ends a worker removes it; a worker
-that ends because nobody is there any more does so itself.
+Temporary files of tasks are in the worker's own folder. The process that ends a worker removes this folder; a
+worker that ends because the server is gone removes it itself.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def run_tasks(connection: Connection, memory_bytes: int, tasks: Tasks, warm_up: 
         ("ready", 0, None). Each task sends ("report", number, value) any number of times, then one of
         ("done", number, value), ("refused", number, sentence) and ("failed", number, sentence).
     memory_bytes : the most address space the process may take.
-    tasks : functions that do the tasks, by name.
+    tasks : functions that run the tasks, by name.
     warm_up : called first, with the memory limit set.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -105,7 +105,7 @@ folders: list[str] = []
 
 
 def make_own_folder() -> None:
-    """Make a temporary folder for this process and its tasks, if possible; tempfile uses it from then on."""
+    """Make a temporary folder for this process and its tasks, if possible. tempfile uses it from then on."""
     with suppress(OSError):
         folders.append(tempfile.mkdtemp(prefix=make_folder_prefix(os.getpid())))
         tempfile.tempdir = folders[0]
@@ -136,8 +136,8 @@ def find_memory_trimmer() -> Any:
 def return_memory() -> None:
     """Give freed memory back to the system, which takes milliseconds.
 
-    The C library keeps most of what large results took, because small pieces in between keep whole blocks
-    from going back by themselves.
+    The C library by itself keeps most of the memory of large results, because small pieces in use prevent it
+    from returning whole blocks.
     """
     gc.collect()
     trim = find_memory_trimmer()

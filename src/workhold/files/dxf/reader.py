@@ -5,8 +5,8 @@ The library ezdxf reads the file; the geometry is computed here, exactly and wit
 Glossary
 --------
 hidden layer : frozen, switched off, or Defpoints, which is never printed. Read only when named.
-label : entity kind and handle (the hexadecimal name every CAD program shows), then the INSERTs it was placed
-    by.
+label : entity kind and handle (the hexadecimal name that every CAD program shows), then the INSERTs that
+    placed it.
 """
 
 from __future__ import annotations
@@ -68,10 +68,10 @@ def read_dxf(
     path : the file, which ezdxf opens by itself.
     content : its bytes.
     unit : overrides the file's unit.
-    usual_unit : the unit of a file that does not say.
+    usual_unit : the unit of a file that does not give one.
     layers : layers to read; all visible ones when None.
-    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
-        ``Drawing``.
+    fit : largest distance in mm of lines and arcs from true curves; with None such curves are replaced
+        provisionally, see ``Drawing``.
     budget : work and time that may still be spent on the file; None gives the usual budget for a file of this
         size.
 

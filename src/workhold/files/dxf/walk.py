@@ -37,7 +37,7 @@ class BlockNesting:
     ----------
     placement : transformation of block or model space coordinates to mm.
     layer : effective layer of the innermost INSERT; None in model space.
-    frozen : whether an INSERT around stands on a hidden layer.
+    frozen : whether a surrounding INSERT is on a hidden layer.
     suffix : `` of INSERT 41`` and so on, for labels.
     blocks : names of the blocks around, in small letters, the outermost first.
     """
@@ -55,7 +55,8 @@ class DxfWalk:
     Parameters
     ----------
     layers : names of the layers to read, in any mixture of capitals; all visible ones when None.
-    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place.
+    fit : largest distance in mm of lines and arcs from true curves; with None such curves are replaced
+        provisionally.
     budget : spent for every entity and vertex.
     """
 

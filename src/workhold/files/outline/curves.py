@@ -204,8 +204,8 @@ def refuse_true_curves(
 
 
 def refit_curve(one: CurveReading, fit: float, budget: Budget | None) -> tuple[int, float]:
-    """Return (1) the number of lines and arcs that replace a curve within ``fit`` mm, and (2) their largest
-    distance in mm from it.
+    """Return (the number of lines and arcs that replace a curve within ``fit`` mm, their largest distance in
+    mm from it).
 
     (0, 0) for a curve of no length. ``budget`` is spent; None means no limit.
     """
@@ -288,8 +288,8 @@ def describe_curve_fit(labels: Iterable[str], found: Mapping[str, CurveReading])
 
 
 def describe_departure(departure: float) -> list[str]:
-    """Return a list with a remark on an outline that lies ``departure`` mm from what
-    was drawn; [] where that is too little to matter.
+    """Return a list with a remark on an outline that lies ``departure`` mm from what was drawn; [] if that is
+    negligible.
     """
     if departure < READING:
         return []

@@ -9,8 +9,8 @@ Glossary
 end : ends are numbered; end 2 i of a set of chains is the first point of chain i, end 2 i + 1 its last.
 node : a point at which ends lie, numbered.
 partner : partner[end] is the end joined to an end, or -1.
-gap : a distance between two ends that are joined all the same, at most the join tolerance.
-junction : a point where three or more ends meet, so that nobody can say how the outline goes on.
+gap : the distance, at most the join tolerance, between two ends that are joined.
+junction : a point where three or more ends meet, so that the outline could continue in several ways.
 stray : a run of chains that does not close.
 loop : a closed run of segments, run in either direction.
 """
@@ -125,8 +125,7 @@ class JoinedLoop:
     ----------
     vertices : (N, 3) array of x, y in mm and bulge.
     labels : N names of the segments for messages.
-    nest : the number of the nest that it is an outline of, from 1; 0 for others, see
-        ``outline.shared_lines``.
+    nest : number, from 1, of the nest (see ``outline.shared_lines``) that the loop belongs to; 0 if to none.
     """
 
     vertices: NDArray[np.float64]

@@ -6,8 +6,8 @@ regions: the parts of a nest along their common cuts. Lines that lie partly on e
 Glossary
 --------
 node : a point where edges end.
-edge : a piece of a line or an arc from node to node, on which no other node lies; drawn twice it is there
-    once.
+edge : a piece of a line or an arc from node to node, with no other node on it. A piece drawn twice is one
+    edge.
 half-edge : an edge run one way: number 2 e runs edge e forward, 2 e + 1 backward.
 face : a region that half-edges bound, with the region on their left (doubly connected edge list; de Berg et
     al., "Computational Geometry", chapter 2).
@@ -40,13 +40,13 @@ NODE = 4e-6
 
 @frozen
 class PlaneEdge:
-    """A piece of what was drawn, between two nodes.
+    """A piece of a drawn line or arc, between two nodes.
 
     Parameters
     ----------
     first, last : indices of its nodes.
-    bulge : run from the first to the last.
-    owners : indices of the segments that it is a piece of.
+    bulge : bulge of the piece, run from the first node to the last.
+    owners : indices of the segments to which the piece belongs.
     """
 
     first: int
@@ -65,7 +65,7 @@ class CurveCluster:
     open : the pieces that bound no outline.
     chains : indices of the chains to which the lines and arcs belong.
     shared : label, start and end of every line or arc between two faces.
-    doubled : both labels, start and end of every stretch on which two were drawn.
+    doubled : both labels, start and end of every stretch that was drawn twice.
     box : (smallest x, smallest y, largest x, largest y) in mm.
     """
 

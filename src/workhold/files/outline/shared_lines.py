@@ -3,8 +3,8 @@
 Glossary
 --------
 nest : outlines that share lines, as parts do that are cut apart by one common cut.
-bad spot : connected lines and arcs that could be an outline in more than one way. What contains it cannot be
-    read; the rest can.
+bad spot : connected lines and arcs that could be an outline in more than one way. A part with a bad spot
+    cannot be read; other parts can.
 frame : a nest with whole parts inside one of its outlines, as a sheet's border with its title block is.
 cluster : connected lines and arcs, see ``outline.plane_map``.
 """
@@ -51,8 +51,8 @@ class AmbiguousSpot:
     Parameters
     ----------
     junction : the first such point.
-    box : around all that is connected with it: (smallest x, smallest y, largest x, largest y) in mm.
-    bounds_something : whether it can be the border of anything.
+    box : bounding box of everything connected with it: (smallest x, smallest y, largest x, largest y) in mm.
+    bounds_something : whether it encloses an area, so that it can be a border.
     layer : layer of the lines that meet at the junction; "" if they are on several layers.
     """
 
@@ -80,7 +80,7 @@ class DrawnOutlines:
     parts : by decreasing area.
     strays : open runs of chains.
     spots : bad spots.
-    remarks : sentences on what was joined, left out and shared.
+    remarks : sentences on joined, omitted and shared lines.
     """
 
     parts: tuple[DrawnPart, ...]

@@ -1,14 +1,15 @@
-"""Parts given as data instead of as drawings: in JSON, or as other libraries hold them in memory.
+"""Parts given as data instead of drawings: in JSON, or as objects of other libraries.
 
 JSON is ``{"name": ..., "units": "mm" | "inch", "loops": [[[x, y, bulge], ...], ...]}``. A result file is read
 too: its ``workpiece`` has the same form.
 
-Objects of shapely, ezdxf, build123d and CadQuery are known by what they can do; none of these is imported to
-find out. A shapely geometry has ``__geo_interface__`` and ``geom_type``, a document of ezdxf has
+Objects of shapely, ezdxf, build123d and CadQuery are recognized by their attributes, without importing these
+libraries. A shapely geometry has ``__geo_interface__`` and ``geom_type``, a document of ezdxf has
 ``modelspace`` and ``header``.
 
-The libraries build123d and CadQuery wrap shapes of Open CASCADE as ``wrapped``, or hold what does. That is
-``part`` or ``sketch`` of a builder, ``vals()`` of a work plane, or ``_faces`` of CadQuery's sketch.
+The libraries build123d and CadQuery keep a shape of Open CASCADE in the attribute ``wrapped``. Other objects
+contain such a wrapper: ``part`` or ``sketch`` of a builder, ``vals()`` of a work plane, ``_faces`` of
+CadQuery's sketch.
 """
 
 from __future__ import annotations
@@ -145,8 +146,8 @@ class ObjectPart:
     ----------
     drawing : the drawing in mm; for a solid that is read at the height of the pegs, its outline there.
     name : default name of the part.
-    part_number : number of the part to take from the drawing; None where the drawing has that part only, or
-        the largest is meant.
+    part_number : number of the part to take from the drawing; None if the drawing has one part only, or for
+        the largest.
     layered : whether layers of the drawing can be chosen.
     """
 

@@ -83,19 +83,19 @@ def load(
         of those that do. For an SVG drawing in pixels also the pixels per inch: "px72", "px90", "px96". A
         geometry of shapely and an array are in mm if None.
     layers : the DXF layers to read, in any mixture of capitals, one or several; all visible ones when None.
-    part_number : which part to take of a drawing with several, from 1 by decreasing area; the largest when
-        None. Solids of a STEP file have numbers by decreasing volume, and may have names.
+    part_number : number of the part to take from a drawing with several, from 1 by decreasing area; the
+        largest when None. Solids of a STEP file have numbers by decreasing volume, and may have names.
     join_tolerance : largest gap between loose ends to close, in mm.
     fit : largest distance in mm of lines and arcs from the curves that they replace; None refuses curves that
-        are not lines or arcs. The workpiece's ``departure`` is the largest distance there is.
+        are not lines or arcs. The workpiece's ``departure`` is the largest distance that occurs.
     axis : "x", "y" or "z", the direction of a STEP file that points up; z when None. With a minus before it
         the part lies on its other side.
     section : take the section of a STEP file's solid at this height in mm above its lowest point, not its
         silhouette.
     peg_height : height up to which pegs reach, in mm above the plane on which a STEP file's solid lies. The
         outline is what they can meet, and only upright faces are touched.
-    head_room : with a height of the pegs, what is kept free above them, in mm; 0.5 when None.
-    least_band : with a height of the pegs, how high an upright face must be there to be touched, in mm; 1
+    head_room : with a height of the pegs, the space kept free above them in mm; 0.5 when None.
+    least_band : with a height of the pegs, the least height in mm of an upright face that pegs may touch; 1
         when None.
     heights : for a STEP file's solid, the lowest and highest z in mm of carriers that reach over heights of
         their own, by role; ``toolkit.heights`` when None.

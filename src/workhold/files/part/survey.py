@@ -5,7 +5,7 @@ drawing are listed with what is on them, so that the ones with the outline can b
 
 Glossary
 --------
-question : what a refusal leaves to the user, see ``files.questions``.
+question : a choice that a refusal leaves to the user, see ``files.questions``.
 gap : the distance from a loose end of a drawing to the nearest other loose end, in mm.
 """
 
@@ -51,9 +51,9 @@ class DrawnLayer:
 
     Parameters
     ----------
-    name : as it is drawn.
-    kinds : how many entities of each kind are on it, blocks written out.
-    hidden : whether it is frozen, switched off or never printed, so that it is read only when it is named.
+    name : the layer's name.
+    kinds : number of entities of each kind on it, with blocks expanded.
+    hidden : whether it is frozen, switched off or never printed; such a layer is read only when it is named.
     loops : how many closed outlines its own lines, arcs and curves make; None where that is unknown.
     size : width and height of these lines, arcs and curves; None where there are none.
     chains : these lines, arcs and curves.
@@ -195,8 +195,8 @@ class DrawingSurvey:
     refusal : the error message of a refusal; empty where there is none.
     asked : names of the questions that must be answered first, such as "unit".
     size : width and height in mm of all that is drawn; None for files that hold no drawing, and while it
-        cannot be read. Where the unit is asked, one unit of the drawing stands for a millimetre in it and in
-        all that follows.
+        cannot be read. If the unit is one of the questions, the size and all following lengths count a unit
+        of the drawing as a millimetre.
     chains : all that is drawn.
     parts : the parts that the closed outlines make, by decreasing area.
     gaps : distances in mm from loose ends to the nearest other loose end, without repetition, in increasing

@@ -74,16 +74,15 @@ class Interpreter:
     Parameters
     ----------
     changes : whether the program changes tools by M6; where it never does, T alone changes the tool.
-    has_lengths : whether it puts a tool length in force anywhere (G43).
+    has_lengths : whether it activates a tool length anywhere (G43).
     in_thousandths : whether a length without a decimal point counts 0.001 mm or 0.0001 inch.
     path : writer of the moves.
-    skipped : lines with a move to one of the machine's own places (G28, G30, G53).
+    skipped : lines with a move to a machine position (G28, G30, G53).
     calls : (line, number) of every tool that comes into the spindle.
     other_lengths : lines with G43 for the length of a tool that is not in the spindle.
     passed : lines with codes that do not affect the path, by code.
     whole, pointed : lines with lengths without a decimal point; whether other lengths have one.
-    angles : of rotary axes, by their letters; ``away`` for an axis that stands at a place of the machine's
-        own.
+    angles : angles of rotary axes by their letters; ``away`` for an axis at a machine position.
     presets : lines with G92 at the start.
     distance_said : whether G90 or G91 has been read.
     """
@@ -374,11 +373,11 @@ class Interpreter:
             modes.cycle, modes.sticky = cycle, {}
 
     def move_once(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
-        """Handle G28, G30 or G53, a move to a place of the
-        machine's own, after which the axes' positions are unknown.
+        """Handle G28, G30 or G53, a move to a machine position; afterwards the positions of the axes are
+        unknown.
 
-        Return the letters that have a meaning. Raises InputError for G53 with anything but G0, and where the
-        place that is passed on the way is not known.
+        Return the letters that have a meaning. Raises InputError for G53 with anything but G0, and if the
+        intermediate point is not known.
         """
         once, axes = codes["once"], values.keys() & {"X", "Y", "Z"}
         self.change_motion(codes)
@@ -409,8 +408,9 @@ class Interpreter:
     def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Handle G52, G92, G92.1 or G92.2, and return the axis letters used.
 
-        Only codes that leave the zero as it is are accepted: G52 with zeros, G92.1 and G92.2 where no offset was
-        set, and a G92 before all motion, which says where the tip stands. Raises InputError for the others.
+        Only codes that leave the zero as it is are accepted: G52 with zeros, G92.1 and G92.2 where no offset
+        was set, and a G92 before all motion, which gives the position of the tip. Raises InputError for the
+        others.
         """
         modes, axes, code = self.modes, values.keys() & {"X", "Y", "Z"}, codes["once"]
         self.change_motion(codes)

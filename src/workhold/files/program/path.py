@@ -1,10 +1,10 @@
 """The path of the tip as rows of moves, in mm from the program's own zero: lines, arcs and drill cycles.
 
-A rapid move to a place with an unknown coordinate is left out, and one from such a place is its end alone. A
-cut is never left out: where its path is not known all along, the program is refused.
+A rapid move to a place with an unknown coordinate is left out. A rapid move from such a place is reduced to
+its end point. A cut is never left out: if its path is not fully known, the program is refused.
 
 Arcs are split into spans of half a turn or less. In a drill cycle pecks (Q) go up and down between the plane
-R and the bottom. One move down and one up sweep the same, and replace all of them.
+R and the bottom. One move down and one up sweep the same space, and replace all of them.
 """
 
 from __future__ import annotations
@@ -54,13 +54,13 @@ class PathWriter:
     modes : state of the control whose moves are written.
     line : number of the line of the block that is read.
     rows : rows of the moves, see ``model.moves.Moves.from_rows``; the tool is -1 before any tool is called.
-    arrivals : lines at which the tool comes from a place that is not known.
-    unplaced : lines of rapid moves in increments that begin at a place that is not known.
+    arrivals : lines with a move that starts at an unknown place.
+    unplaced : lines of incremental rapid moves that start at an unknown place.
     adrift : lines of rapid moves to a place with an unknown coordinate.
     nose : lines of rapid moves to a height of the spindle's nose.
-    unpecked : lines of peck drilling without the depth of a peck, which sweeps the same.
+    unpecked : lines of peck drilling without the depth of a peck, which does not change the swept space.
     has_heights : whether the program gives any height.
-    offset_used : code of the zero in which the moves are; None before the first.
+    offset_used : code of the zero from which the moves are measured; None before the first.
     budget : number of moves, and time, that may still be spent.
     """
 

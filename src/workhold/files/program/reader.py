@@ -70,7 +70,7 @@ def read_program(path: str | Path, tools: ToolsGiven = None, **how: Any) -> Prog
 
     Parameters
     ----------
-    how : the other parameters of :func:`read_program_with_calls`.
+    ``how`` : the other parameters of :func:`read_program_with_calls`.
 
     Raises
     ------
@@ -249,7 +249,7 @@ def interpret_program(
 
 
 def gives_height(block: ProgramBlock) -> bool:
-    """Return whether a block gives a height of the tip, other than one of the machine's own."""
+    """Return whether a block gives a height of the tip that is not a machine position."""
     return any(letter == "Z" for letter, _ in block.words) and not any(
         letter == "G" and normalize_code(text) in VISITS for letter, text in block.words
     )

@@ -1,11 +1,12 @@
 """Subprograms of a file: the blocks of a program in the order in which a control runs them.
 
-M98 P100 runs the blocks behind O100 until M99, M97 P100 those from the block N100 on; L says how often. On
-Fanuc, of a P with five digits and more the last four are the number, and those before them say how often.
+M98 P100 runs the blocks behind O100 until M99, M97 P100 those from the block N100 on; L is the number of
+repeats. On Fanuc, a P with five or more digits has the subprogram's number in its last four digits, and the
+number of repeats before them.
 
 Glossary
 --------
-call : a block with M98 or M97; its other words take effect before.
+call : a block with M98 or M97; its other words take effect before the call.
 """
 
 from __future__ import annotations
@@ -43,9 +44,9 @@ class RunningSubprogram:
     ----------
     begin : index of its first block.
     back : index of the block behind its call.
-    left : how often it still runs, this time included.
+    left : number of runs left, this one included.
     call : line and words of its call, for messages.
-    program : number of the program in which it stands.
+    program : number of the program that contains it.
     """
 
     begin: int
@@ -185,8 +186,8 @@ def find_subprogram_starts(blocks: Sequence[ProgramBlock]) -> Starts:
 def refuse_return(block: ProgramBlock, is_called: bool, is_optional: bool) -> None:
     """Raise InputError for an M99 that does not simply return to the block after the call.
 
-    That is an M99 outside a subprogram, on a line with a slash, or with P. ``is_called`` says whether a
-    subprogram runs, ``is_optional`` whether the line begins with a slash.
+    That is an M99 outside a subprogram, on a line with a slash, or with P. ``is_called`` tells whether a
+    subprogram is running, ``is_optional`` whether the line begins with a slash.
     """
     if not is_called:
         raise InputError("M99 stands outside of a subprogram, where the program begins anew: write M30.")

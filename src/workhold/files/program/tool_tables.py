@@ -4,14 +4,8 @@ A TOML file has a table for each tool; without a unit, lengths are in the progra
 
     unit = "mm"
 
-    [tool.1]
-    name = "end mill"
-    type = "mill"               # or "drill", of which the word in the name is enough
-    diameter = 10
-    flute_length = 22
-    stickout = 40               # from the tip to the holder
-    holder_diameter = 40
-    holder_length = 50
+[tool.1] name = "end mill" type = "mill" # or "drill"; the word in the name is enough diameter = 10
+flute_length = 22 stickout = 40 # from the tip to the holder holder_diameter = 40 holder_length = 50
 
 A CSV file has the same names at its head, with ``tool`` before them. A line of LinuxCNC's table is
 ``T1 P1 D10 Z50 ;end mill``; its Z is an offset and says nothing of the tool's shape.
@@ -183,7 +177,7 @@ def read_tools(path: str | Path, unit: Unit) -> tuple[dict[int, Tool], bool]:
     Returns
     -------
     tuple
-        Tools by their numbers, and whether every length stands in a unit that the file itself says.
+        Tools by their numbers, and whether the file itself gives the unit of every length.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """A program's text as blocks of words with comments; its codes: groups, refusals, and the state of a control.
 
-A group holds codes of which one is in force, or stands in a block: T. R. Kramer, F. M. Proctor, E. Messina,
-"The NIST RS274NGC interpreter, version 3", NISTIR 6556, 2000, "Modal groups". Cycles are a group of their own
-here, as on Fanuc and Haas.
+Of the codes of a group, one is in force at a time, and a block may have one: T. R. Kramer, F. M. Proctor, E.
+Messina, "The NIST RS274NGC interpreter, version 3", NISTIR 6556, 2000, "Modal groups". Cycles are a group of
+their own here, as on Fanuc and Haas.
 
 Glossary
 --------
@@ -192,7 +192,9 @@ def refuse_code(code: str) -> NoReturn:
 
 
 def refuse_function(code: str) -> None:
-    """Raise InputError for a code of letter M that does more than switch something."""
+    """Raise InputError for an M code that the reader does not support because it may move or change
+    something.
+    """
     if code in FUNCTION_REASONS:
         raise InputError(f"M{code} {FUNCTION_REASONS[code]}.")
 
@@ -217,7 +219,7 @@ NOSE = "nose"
 
 @define
 class ControlState:
-    """The state of a control, as far as the path follows from it; lengths in mm, from the program's own zero.
+    """The part of a control's state that determines the path; lengths in mm, from the program's own zero.
 
     Parameters
     ----------
@@ -227,8 +229,8 @@ class ControlState:
     plane, distance, centre, feed_kind, back : codes in force.
     offset : code of the zero in force.
     place : x, y and z of the tip, None where it is not known.
-    lost : reason why each of x, y and z is not known; empty where the program has not named it yet.
-    named : whether any of x, y and z has been named yet.
+    lost : reason why each of x, y and z is not known; empty if the program has not given it yet.
+    named : whether the program has given any of x, y and z.
     length : name of the tool length in force, such as H2 or T2; None before any is given, :data:`NOSE` where
         heights are those of the spindle's nose.
     called, tool : number in the last word T, and number of the tool in the spindle; None before the first.
@@ -266,9 +268,9 @@ class ProgramBlock:
     ----------
     line : its number, from 1.
     words : letters and the texts of their numbers, in order; without the block's own number.
-    number : the block's own, N; None without one.
-    program, program_line : number (O) of the program in which it stands, and the line of that O; None before
-        any.
+    number : the block's number N; None without one.
+    program, program_line : number (O) of the program that contains it, and the line of that O; None before
+        any O.
     functions : codes of its words M.
     """
 
@@ -281,7 +283,7 @@ class ProgramBlock:
 
     @property
     def ends(self) -> bool:
-        """Whether the program ends with it."""
+        """Whether the program ends with this block."""
         return bool(self.functions & ENDS)
 
 

@@ -51,8 +51,8 @@ BLOCK = 1 << 15
 
 @frozen
 class ColumnsSink:
-    """A sink that writes a result in columns as its fixtures
-    come; an earlier file is replaced only when all went well.
+    """A sink that writes a result in columns as its fixtures come; an earlier file is replaced only after
+    success.
     """
 
     path: Path
@@ -104,7 +104,7 @@ def refuse_holds(query: Query, path: str | Path) -> None:
 
 
 def write_columns(result: Result, path: str | Path) -> None:
-    """Write a result file in columns; an earlier file of that name is replaced only when all went well."""
+    """Write a result file in columns; an earlier file of that name is replaced only after success."""
     refuse_holds(result.query, path)
     ColumnsSink(Path(path)).receive(result, len(result), [result.table])
 

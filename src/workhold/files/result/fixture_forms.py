@@ -40,7 +40,7 @@ Peg = Annotated[int, Field(ge=0, le=3)]
 
 
 class SeatingKeys(BaseModel):
-    """Keys that must look like this; further keys are allowed."""
+    """The base of the forms of a seating: required keys; further keys are allowed."""
 
     model_config = ConfigDict(strict=True, allow_inf_nan=False)
 
@@ -85,7 +85,7 @@ class SeatPart(SeatingKeys):
 
 
 class PassPart(SeatingKeys):
-    """The pose in which the cage opens first."""
+    """The pose through which the part first gets out when the cage opens."""
 
     pose: SeatPosePart
     jaw_separation: float
@@ -101,7 +101,7 @@ class CagePart(SeatingKeys):
 
 
 class CageShortPart(SeatingKeys):
-    """By how much the true extremes of a cage may exceed those that were computed, at most."""
+    """Upper bounds of how far the true extremes of a cage exceed the computed ones."""
 
     theta_deg: Length
     share: Length = Field(description="of shifts, of their whole range")
@@ -213,7 +213,7 @@ class JawPegPart(ContactPart):
 
 
 class LocatorPart(ContactPart):
-    """A peg in a hole of a plate, which stands still or slides with a jaw."""
+    """A peg in a hole of a plate; the plate stands still or slides with a jaw."""
 
     role: Literal["locator", "jaw"]
     column: Whole
@@ -221,7 +221,7 @@ class LocatorPart(ContactPart):
 
 
 class ClampPart(ContactPart):
-    """The tip of a clamp, its hole where that is known, and the row or column that it pushes along."""
+    """The tip of a clamp, its hole if known, and the row or column along which it pushes."""
 
     role: Literal["clamp"]
     hole: Annotated[list[Whole], Field(min_length=2, max_length=2)] | None
@@ -248,7 +248,7 @@ class PosePart(FormPart):
 
 
 class NearestMovePart(FormPart):
-    """Nearest approach of the program's tools to what holds the part, in mm."""
+    """Nearest approach of the program's tools to the fixture, in mm."""
 
     distance: float
     line: Whole
@@ -257,7 +257,7 @@ class NearestMovePart(FormPart):
 
 
 class AskedForcePart(FormPart):
-    """A force that a program asks for, in N, and the contact that it is about."""
+    """A force in N that a program needs, and the contact that limits it."""
 
     force: float
     line: Whole | None
@@ -266,7 +266,9 @@ class AskedForcePart(FormPart):
 
 
 class CuttingNeedPart(FormPart):
-    """The jaw force that keeps all contacts along the program, and the largest force of one."""
+    """The jaw force that keeps all contacts pressed throughout the program, and the largest force on one
+    contact.
+    """
 
     jaw: AskedForcePart
     contact: AskedForcePart
@@ -275,7 +277,7 @@ class CuttingNeedPart(FormPart):
 
 
 class FixturePart(FormPart):
-    """One fixture; best first."""
+    """One fixture of a list; the best comes first."""
 
     type: str
     direction: str | None = None

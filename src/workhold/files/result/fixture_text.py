@@ -1,11 +1,11 @@
 """The fixtures of a result as text: lines of JSON (MODEL, "Result file"), and CSV for a spreadsheet.
 
-A line of JSON is made from a template that follows from the toolkit's carriers. It gives of each contact its
-place, as its carrier is written, and the force on it, per unit of the force of each thing that moves. The
+A line of JSON is made from a template that follows from the toolkit's carriers. It gives each contact's
+place, in the form for its carrier, and the force on it per unit of force of each moving carrier. The
 templates are filled with columns of numbers, because a result may have a million fixtures.
 
-The CSV table has one row per fixture and a line of column names. The pins of one fixture are a table of their
-own: which hole, which dowel, and what each touches.
+The CSV table has one row per fixture and a line of column names. The pins of one fixture have a separate
+table: hole, dowel, and touched face of each.
 
 Glossary
 --------
@@ -165,7 +165,7 @@ def make_fixture_template(
 def make_peg_template(carrier: Carrier, travels: int) -> str:
     """Return the %-template of a peg on a carrier (jaw, plate or clamp).
 
-    ``travels`` is the number of things that move. The template of a clamp takes column and row twice: for the
+    ``travels`` is the number of moving carriers. The template of a clamp takes column and row twice: for the
     clamp's hole, and for the line along which it pushes.
     """
     key, name = carrier.file_entry
@@ -223,7 +223,7 @@ def split_into_written_blocks(
 
 @frozen(eq=False)
 class WrittenBlock:
-    """A block of N fixtures with their places as they are written.
+    """A block of N fixtures, with places rounded as in the file.
 
     Parameters
     ----------

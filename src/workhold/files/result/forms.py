@@ -113,7 +113,7 @@ class WorkpiecePart(FormPart):
     )
 
     def to_finished(self) -> Workpiece | None:
-        """Return the finished part inside a raw block; None where the workpiece is none."""
+        """Return the finished part inside a raw block; None if the workpiece is not a raw block."""
         part = self.finished
         if part is None:
             return None
@@ -121,7 +121,7 @@ class WorkpiecePart(FormPart):
 
 
 class SolidPart(FormPart):
-    """How the solid of an outline stands."""
+    """The position and heights of an outline's solid."""
 
     axis: str
     height: float
@@ -189,7 +189,7 @@ else:
 
 
 class RestrictionsPart(FormPart):
-    """What was ruled out."""
+    """The query's restrictions."""
 
     avoid: list[int] = []
     zones: list[list[list[float]]] = []
@@ -272,7 +272,7 @@ class UndecidedPart(FormPart):
 
 
 class ProofPart(FormPart):
-    """The account of the search."""
+    """The account of the search: its counts of candidates."""
 
     cells: int = Field(ge=0)
     candidates: int = Field(ge=0)

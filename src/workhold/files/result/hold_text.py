@@ -1,7 +1,7 @@
 """The text of fixtures that hold by friction: a line of JSON, or a row of a spreadsheet, for each.
 
-A fixture without pegs gives what each jaw touches as rectangles in the jaw's plane, the height of the
-parallels and the side of the work stop. Figures that follow from these are written, too.
+For a fixture without pegs the text has the faces that each jaw touches, as rectangles in the jaw's plane, the
+height of the parallels and the side of the work stop. Figures that follow from these are written, too.
 :mod:`workhold.files.result.holds` reads the lines; it is a module of its own because pydantic takes long to
 import. Straps are written by :mod:`workhold.files.result.strapped_text`.
 """

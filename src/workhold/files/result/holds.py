@@ -47,7 +47,7 @@ RectanglePart = Annotated[list[Number], Field(min_length=4, max_length=4)]
 
 
 class PatchPart(FormPart):
-    """What a jaw touches: the faces, and rectangles [x0, x1, z0, z1] in mm; a line has no width."""
+    """The contact of a jaw: faces, and rectangles [x0, x1, z0, z1] in mm; a line contact has no width."""
 
     segments: list[Whole] = Field(description="numbers of the faces; none where corners touch")
     rectangles: list[RectanglePart] = Field(min_length=1)
@@ -84,7 +84,7 @@ class HoldQualityPart(FormPart):
 
 
 class HoldPart(FormPart):
-    """A fixture of two flat jaws; best first."""
+    """A fixture between two flat jaws; the best comes first."""
 
     type: str
     parallels: Number

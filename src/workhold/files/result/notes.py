@@ -1,7 +1,7 @@
 """Notes in result files: their sentences under ``notes``, and the data of each under ``note_data``.
 
-Files of older versions have the sentences alone. This is the one place where a sentence is recognised: it is
-compared with those of all notes that its numbers and its query allow.
+Files of older versions have the sentences alone. Only this module recognizes such sentences: it compares each
+with the sentences of all notes that fit its numbers and the query.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Reading of one fixture of a result file, without the others.
 
-In a file with one fixture on every line the other lines are counted and skipped. If other fixtures are needed
-later, they are read from the file then: how many have the same holes from the text of their lines, all else
-by reading the file as usual. A file in columns, or of another layout, is read as a whole.
+In a file with one fixture on every line the other lines are counted and skipped. If data of other fixtures
+are needed later, the file is read again: only the text of its lines to count fixtures in the same holes,
+otherwise the whole file as usual. A file in columns, or of another layout, is read as a whole.
 """
 
 from __future__ import annotations
@@ -119,8 +119,8 @@ def pick_fixture(texts: Iterable[bytes], path: Path, rank: int) -> OneFixtureRea
 
 
 class TableOfFile(FixtureTable):
-    """A table of all fixtures of a file, of which some are read. The others are read as soon as one of the
-    others is accessed.
+    """A table of all fixtures of a file, of which some are read at first. All others are read when one of
+    them is accessed.
 
     Parameters
     ----------

@@ -89,7 +89,7 @@ def describe_columns(travels: int, has_program: bool = False, figures: int = BEF
 
     Parameters
     ----------
-    travels : number of things that move in a fixture, 1 or 2.
+    travels : number of moving carriers of a fixture, 1 or 2.
     has_program : whether the column of figures ends with the program clearance.
     figures : number of figures of quality without the program clearance.
     """
@@ -176,8 +176,8 @@ def refuse_rows(faulty: NDArray[np.bool_], reason: str, path: Path, places: Sequ
 
 
 def refuse_faulty(table: FixtureTable, query: Query, path: Path, places: Sequence[int]) -> None:
-    """Raise InputError for fixtures that contradict the toolkit, the
-    workpiece or themselves. Their types must be known.
+    """Raise InputError for fixtures that contradict the toolkit, the workpiece or themselves. The caller must
+    have checked their types.
 
     ``places`` are the indices of the fixtures in the file, from 0.
     """

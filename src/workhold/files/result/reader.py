@@ -69,7 +69,7 @@ class FixtureArrays:
 
     Parameters
     ----------
-    types, jaws : (N,) and (N, P), names of the fixtures' types and of the jaws (or other carriers) of their
+    types, jaws : (N,) names of the fixtures' types, and (N, P) names of the jaws or other carriers of their
         pegs.
     holes : (N, P, 3) column, row and face.
     contacts : (N, P, 4) x and y in mm, then the force on the contact per unit of the first clamp's force and
@@ -95,7 +95,7 @@ def read_result(path: str | Path) -> Result:
 
     Parameters
     ----------
-    path : of the file, which :func:`workhold.save` or the command has written.
+    path : path of the file, written by :func:`workhold.save`, by the command or by another program.
 
     Raises
     ------
@@ -254,7 +254,7 @@ def read_wall_pegs(wall: Any) -> list[Any]:
 
 
 def read_peg_place(peg: Any, direction: Any) -> tuple[Any, Any, Any]:
-    """Return the name of what a peg of a file stands in (its carrier), and the column and row of its hole.
+    """Return (name of the carrier, column, row) of the hole in which a peg of a file stands.
 
     Column and row are 0 for a clamp without a hole that lacks them. ``direction`` is the direction in which
     the peg's clamp pushes.

@@ -15,7 +15,7 @@ FORMS = ("json", "csv", "npz")
 
 
 def save(result: Result, path: str | Path, form: str | None = None, *, overwrite: bool = False) -> None:
-    """Write a result file; an earlier one of that name is replaced only when all went well.
+    """Write a result file; an earlier one of that name is replaced only after success.
 
     Angles are rounded to 1e-10 degrees and lengths to 1e-9 mm, so a result that is opened again differs from the
     one saved in the last digits.

@@ -56,7 +56,7 @@ class StrappedPosePart(FormPart):
 
 class StrapPart(FormPart):
     """A strap: the hole of its bolt, the point where its tip presses, the hole of the support under that
-    point or "plate", and the height at which its heel stands.
+    point or "plate", and the height of its heel.
     """
 
     hole: HolePair

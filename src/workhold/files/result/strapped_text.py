@@ -1,7 +1,8 @@
 """The text of seats under straps: a line of JSON of a result file, or a row of a spreadsheet, for each.
 
-A seat gives its three locators, the pose, and the straps with the push by hand where these were looked for.
-:mod:`workhold.files.result.strapped` reads the lines; it is a module of its own because pydantic takes long to import.
+The text of a seat has its three locators, the pose and, if straps were searched, the straps with the push by
+hand. :mod:`workhold.files.result.strapped` reads the lines; it is a module of its own because pydantic takes
+long to import.
 """
 
 from __future__ import annotations

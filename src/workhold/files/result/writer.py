@@ -64,7 +64,7 @@ AT_ONCE = 2000
 
 
 def write_result(result: Result, path: str | Path) -> None:
-    """Write a result file (MODEL, "Result file"); an earlier file is replaced only when all went well."""
+    """Write a result file (MODEL, "Result file"); an earlier file is replaced only after success."""
     with write_text_file(path) as stream:
         stream.writelines(write_result_text(result))
 
@@ -115,8 +115,8 @@ def add_clearances(lines: list[str], result: Result, rows: slice) -> list[str]:
     """Return the JSON lines of the fixtures at ``rows``, with the program's
     nearest move and the forces that it needs added.
 
-    A fixture whose tools do not come down to the pegs gets no clearance. Forces are added only if the program
-    has forces.
+    A fixture gets no clearance if the tools stay above the pegs. Forces are added only if the program has
+    forces.
     """
     # Other files are written without what measures.
     from workhold.statics.program_clearance import find_nearest_moves, name_element
@@ -185,8 +185,8 @@ def make_notes_entry(notes: Sequence[Note]) -> dict[str, Any]:
 
 
 def make_least_error_entry(result: Result) -> dict[str, float]:
-    """Return the entry of the least effective location error in mm; {} for a result whose order does not have
-    steps of that error.
+    """Return the entry of the least effective location error in mm; {} if the result is not ranked in steps
+    of that error.
     """
     least = result.least_effective_error
     return {} if least is None else {"least_effective_error": least}

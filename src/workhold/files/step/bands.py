@@ -10,9 +10,9 @@ Glossary
 carrier : the infinite line or the whole circle that a segment lies on. A position on it is in mm along a line
     and in radians around a circle.
 wall : an upright face of the solid.
-run : a range of heights, as long as can be, at all of which walls stand over a place.
-branch : a part of a wall's edge over which the position on the carrier only grows or only falls.
-steep : where an edge is upright, or so nearly that rounding hides it, so that the end of a run jumps.
+run : a maximal range of heights that walls cover above a place.
+branch : a part of a wall's edge along which the position on the carrier is monotonic.
+steep : said of a point where an edge is upright up to rounding, so that the end of a run jumps.
 """
 
 from __future__ import annotations
@@ -318,9 +318,9 @@ class EdgeBranch:
     edge : see :class:`WallEdge`.
     carrier : a segment of the wall's line or circle, from which positions are measured.
     parameters : (N,) of the edge's curve, rising or falling.
-    places : (N,) positions on the carrier there, rising, on a circle without jumps.
+    places : (N,) positions on the carrier there, rising; on a circle, angles without jumps.
     heights : (N,) z in mm there; between two neighbours the height is monotonic.
-    steep : whether it is steep at its first and its last position.
+    steep : two flags: whether the edge is steep at its first and at its last position.
     known : cache of heights in mm by position.
     """
 
@@ -546,7 +546,7 @@ class WallRun:
 
 @frozen(eq=False)
 class CoveredPiece:
-    """A piece of the border, or a part of one, with the runs over it.
+    """A piece of the border, or a part of one, with the runs above it.
 
     Parameters
     ----------
@@ -757,8 +757,8 @@ class WallsByCarrier:
         """Return a piece of the border with the ranges of height that upright faces cover over it.
 
         The ranges are limited to the heights of pegs; ranges of several faces that touch or overlap are
-        merged. All faces over the piece have their material on the same side: otherwise a peg would meet
-        material, and the piece would be no border.
+        merged. All faces over the piece have their material on the same side; otherwise the piece would not
+        be a border.
         """
         walls = self.find_walls_over(piece.carrier)
         middle = find_clear_place(piece, [branch for wall in walls for branch in wall.branches])

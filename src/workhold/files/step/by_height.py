@@ -1,4 +1,4 @@
-"""Parts in STEP files seen at the height of the pegs: the outline there, with what may be touched of it."""
+"""Parts in STEP files seen at the height of the pegs: the outline there, and its touchable segments."""
 
 from __future__ import annotations
 
@@ -65,11 +65,11 @@ class HeightView:
     axis : direction of the file that points up; z when None.
     peg_height : height in mm, above the plane on which the part lies, up to which pegs reach; the part's
         height when None.
-    head_room : what is kept free above the pegs, in mm.
+    head_room : space kept free above the pegs, in mm.
     least_band : shortest band that may be touched, in mm.
     heights : lowest and highest z in mm over which carriers with heights of their own reach, by their role.
-    peg_diameter : diameter in mm of the pegs, by which a height is chosen if ``peg_height`` is None; None
-        where it is not known.
+    peg_diameter : diameter of the pegs in mm, used to choose a height if ``peg_height`` is None; None if not
+        known.
     part_number : number or name of the solid to take of several; the largest when None.
     """
 
@@ -100,10 +100,10 @@ class HeightDrawing:
     Parameters
     ----------
     loops : vertices (N, 3) in mm of every loop; outer ones first, the largest of them before all.
-    solid : how the solid stands, with the bands of the segments.
+    solid : position and heights of the solid, with the bands of the segments.
     remarks : sentences for the user.
-    heights : what other heights of the pegs offer.
-    own : what carriers with heights of their own meet.
+    heights : outlines at other heights of the pegs.
+    own : outlines that carriers with heights of their own meet.
     solids : all of the file, the largest first.
     usual : height of pegs that was chosen; None where the user gave one, or the pegs' diameter is not known.
     """

@@ -1,9 +1,9 @@
-"""How far a solid departs from a prism over its outline, in words.
+"""Sentences on the deviation of a solid from a prism over its outline.
 
 Glossary
 --------
-inset : how far inside the outline a face goes, seen along the axis, in mm.
-overhang : how far outside the outline a face goes, in mm.
+inset : how far a face lies inside the outline, seen along the axis, in mm.
+overhang : how far a face reaches outside the outline, in mm.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ class FoundOutline:
     ----------
     area : area of the outline in mm².
     low, high : z of the solid's lowest and highest point, in mm.
-    insets, overhangs : how far each face goes inside the outline, and how far outside, in mm; 0 where it does
+    insets, overhangs : how far each face lies inside the outline and reaches outside it, in mm; 0 if it does
         not.
-    departure : largest distance in mm of lines and arcs from curves of the border; a face may lie off them by
-        as much.
+    departure : largest distance in mm of lines and arcs from curves of the border; a face may deviate from
+        them by as much.
     """
 
     area: float

@@ -1,8 +1,9 @@
 """Curves seen from above that are neither line nor arc, enclosed in convex polygons.
 
 A rational Bézier curve lies in the convex hull of its control points. So a curve is cut until each piece is
-near to its chord, and the hulls of the pieces hold all of it. A fold of a free-form face is only known by
-where the vertical component of the normal changes its sign: small squares around such places enclose it.
+near to its chord, and the hulls of the pieces hold all of it. A fold of a free-form face is known only as the
+place where the vertical component of the normal changes its sign. Small squares around such places enclose
+it.
 """
 
 from __future__ import annotations
@@ -104,9 +105,7 @@ class Enclosure:
         return [*self.segments, *sides]
 
     def may_hold(self, point: Point) -> bool:
-        """Return whether a point is in one of the polygons; there it is not known
-        on which side of the curve the point lies.
-        """
+        """Return whether a point is in one of the polygons. The side of the curve is not known there."""
         if not self.polygons:
             return False
         if self.boxes is None:

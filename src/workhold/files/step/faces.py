@@ -1,4 +1,4 @@
-"""The faces of a solid by how they lie to the upward axis: what is prismatic, and what is not.
+"""The faces of a solid, classified by their position relative to the upward axis.
 
 Glossary
 --------
@@ -7,8 +7,8 @@ level : a flat face perpendicular to the axis.
 upright : a face parallel to the axis everywhere; only such faces can be the outline.
 leaning : any other face, such as a chamfer, a fillet along a horizontal edge, a draft, a hole across the
     axis.
-layer : a range of heights without a level face and without a leaning one inside it: one section holds for all
-    of it.
+layer : a range of heights with no level face inside it. Without a leaning face inside, the section is the
+    same at all its heights.
 """
 
 from __future__ import annotations
@@ -57,15 +57,15 @@ class SolidFace:
     Parameters
     ----------
     shape : Open CASCADE's face.
-    lie : how it lies to the axis.
+    lie : "level", "upright" or "leaning" relative to the axis.
     kind : its kind in words, such as ``sloping plane``.
     low, high : its lowest and highest z in mm.
-    fold : z at which a leaning face stands upright along a horizontal curve, where it may reach farthest out;
-        None where it has no such curve.
+    fold : z of a horizontal curve along which a leaning face is upright and may reach farthest out; None
+        without such a curve.
     upward : whether a level face looks up.
     box : (x0, y0, x1, y1) around it, seen from above, in mm.
-    is_free : whether its surface is written as a spline, also where that is a plane or a quadric, or as a
-        curve that is extruded or turned. The library computes volumes of solids with such walls only roughly.
+    is_free : whether the file gives its surface as a spline, an extruded curve or a turned curve, even if it
+        is in truth a plane or a quadric. The library computes volumes of solids with such walls only roughly.
     """
 
     shape: Any
@@ -81,7 +81,7 @@ class SolidFace:
 
 @frozen
 class HeightRange:
-    """A range of z in mm; ``prismatic`` when no leaning face is in it."""
+    """A range of z in mm; ``prismatic`` tells that no leaning face is in it."""
 
     low: float
     high: float

@@ -1,4 +1,4 @@
-"""Outlines by height: what pegs that reach over some heights may run into, and what they may touch.
+"""Outlines by height: the border that pegs meet between two heights, and the segments that they may touch.
 
 The outline U(a, p) is the projection of the solid's part between the heights a and p. Its border consists of
 edges, folds and cuts (see ``files.step.projected``); the material beside them decides which pieces belong to
@@ -7,7 +7,7 @@ it.
 Glossary
 --------
 peg height : the height p in mm above the plane on which the part lies up to which pegs reach.
-head room : what is kept free above the pegs, in mm.
+head room : the space kept free above the pegs, in mm.
 """
 
 from __future__ import annotations
@@ -138,7 +138,7 @@ class StandingSolid:
     Parameters
     ----------
     shape : Open CASCADE's solid in mm, its axis along z.
-    edge_boxes : (E, 5) of every edge the least x and y, the greatest x and y, and the greatest z, in mm.
+    edge_boxes : (E, 5) for every edge: least x and y, greatest x and y, greatest z, in mm.
     """
 
     shape: Any
@@ -205,7 +205,7 @@ class StandingSolid:
         Parameters
         ----------
         peg_height : height in mm up to which pegs reach; the solid's height when None.
-        head_room : kept free above the pegs, in mm.
+        head_room : space kept free above the pegs, in mm.
         least_band : shortest band in mm that may be touched.
         low : height in mm from which pegs reach; 0 or less stands for pegs that reach from below the part.
         silhouette : segments of the border, where it is known that the outline is the silhouette; else empty.
@@ -525,7 +525,7 @@ def list_height_rows_between(
     ----------
     room, least : see :func:`tabulate_peg_heights`.
     whole : outline of the highest pegs, if there is one.
-    is_whole : whether ``whole`` is known to be the outline at all heights of the range.
+    is_whole : whether ``whole`` is already known to be the outline at all heights of the range.
     """
     if is_whole or not any(
         face.lie == "leaning"
@@ -670,7 +670,7 @@ def draw_own_outlines(
     Parameters
     ----------
     heights : lowest and highest z in mm over which the carriers reach, by role.
-    found : the solid as all other pegs meet it.
+    found : the solid with the outline that all other pegs meet.
 
     Raises
     ------

@@ -1,8 +1,8 @@
 """The level faces of a standing solid that supports from below and a clamp on top may touch.
 
-Of an upper face only the open parts count: those over which nothing of the solid lies. Computed besides are
-the regions of the solid above the height of the face, which the head of a clamp must not enter, and the
-hanging parts of the faces, under which the material does not reach down to the plane on which the part lies.
+A clamp may touch only the open parts of an upper face, which nothing of the solid covers. Two further kinds
+of regions are computed. The head of a clamp must not enter the regions where the solid rises above the face.
+Under the hanging parts of a face the material does not reach down to the plane on which the part lies.
 
 All are regions of a planar subdivision. The border of a face, and the curves that bound the solid above or
 below it, are cut where they cross. Points beside each piece decide on which side of it the region lies.
@@ -11,9 +11,9 @@ polygon counts as part of a face.
 
 Glossary
 --------
-open : of a face, that nothing of the solid lies above it.
-rising : what the solid has above a height, seen from above.
-hanging : of a face, that an upright line leaves the material between the face and the lying plane.
+open : said of a part of a face that nothing of the solid covers.
+rising : the region of the solid above a height, seen from above.
+hanging : said of a part of a face under which the material is interrupted above the lying plane.
 lying plane : the plane z = 0 on which the part lies.
 """
 
@@ -66,8 +66,8 @@ SLIVER = 1e-6
 
 @frozen(eq=False)
 class LevelTop:
-    """The level upper faces of one height and what is around
-    them, for clamps on top; all loops are vertices (N, 3).
+    """The level upper faces of one height and their surroundings, for clamps on top; all loops are vertices
+    (N, 3).
 
     Each vertex is x and y in mm and the bulge of the segment that follows.
 
@@ -75,9 +75,9 @@ class LevelTop:
     ----------
     height : height of the faces in mm.
     open : the parts of the faces that are open, outer loops counter-clockwise, openings clockwise.
-    rising : what rises above the height.
+    rising : regions where the solid rises above the height.
     hanging : those parts of ``open`` under which the material does not reach down to z = 0.
-    is_unclear : whether nothing is open because it is not known what rises or hangs there.
+    is_unclear : whether nothing is open because the rising or hanging regions are not known.
     """
 
     height: float
@@ -213,7 +213,7 @@ def make_level_top(
 def make_rises_above_test(
     solid: StandingSolid, height: float, is_on: Callable[[Point], bool], places: Budget
 ) -> Callable[[Point], bool]:
-    """Return a function that says whether the solid has material above a height over a point (x, y).
+    """Return a function that tells whether the solid has material above a height over a point (x, y).
 
     A fillet is hardly above the level face that it runs into: points at its lower edge count as on the face,
     so the answer there is False.
@@ -354,7 +354,7 @@ def trace_region_of_faces(face_borders: Sequence[FaceBorder]) -> list[Array]:
 
 
 def make_on_faces_test(face_borders: Sequence[FaceBorder]) -> Callable[[Point], bool]:
-    """Return a function that says whether a point surely lies on one of some faces.
+    """Return a function that tells whether a point surely lies on one of some faces.
 
     Points in polygons that enclose curves of the border are not surely on a face.
     """

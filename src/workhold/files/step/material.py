@@ -183,7 +183,7 @@ class PlaneFaces:
 
 
 def find_boxes_holding(points: Sequence[Point], boxes: Array, more: float = 0.0) -> NDArray[np.bool_]:
-    """Return (N, F), whether each of N points (x, y) lies in each of F boxes.
+    """Return booleans (N, F): whether each of N points (x, y) lies in each of F boxes.
 
     The first four columns of ``boxes`` are x0, y0, x1, y1 in mm; each box is widened by ``more`` mm on all
     sides.
@@ -231,7 +231,7 @@ def find_cone(face: SolidFace) -> Sheet | None:
 class Material:
     """The intervals in which upright lines run inside a solid, found on demand and cached.
 
-    Upright faces are not met by such lines.
+    Such lines do not meet upright faces.
 
     Parameters
     ----------
@@ -346,10 +346,9 @@ class Material:
         return [high >= self.reached[point, low][0] for point in points]
 
     def find_within(self, points: Sequence[Point], low: float, high: float) -> list[float]:
-        """Return for each point an upper z in mm such that there is material between ``low`` and it, and so
-        between ``low`` and anything higher.
+        """Return for each point an upper z in mm such that the range from ``low`` to it contains material.
 
-        It is at most ``high``; inf where there is no material between ``low`` and ``high``. It need not be
+        It is at most ``high``, and inf if there is no material between ``low`` and ``high``. It need not be
         the least such z.
         """
         # A face has material on one of its sides, so one hit within is enough. Flat faces are asked first,

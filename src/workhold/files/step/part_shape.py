@@ -115,7 +115,7 @@ def make_part_shape(content: bytes, workpiece: Workpiece) -> PartShape:
 def list_levels(solid: SolidOutline) -> Levels:
     """Return a solid's bands (z0, z1) and, for each loop of a level face, (z, signed area); in mm and mm².
 
-    ``faces`` is empty where the file does not say how high upper faces are.
+    The second list is empty if the file does not give the heights of upper faces.
     """
     bands = [[*band] for band in solid.bands if band is not None]
     # Files of an older program do not say how high upper faces are.

@@ -1,20 +1,20 @@
 """The curves of a solid that can bound its projection along the axis, as lines and arcs in the plane.
 
 A point on the border of a slab's projection lies on an edge, on a fold of a face, or on the cut at either end
-of the slab. Too many curves do no harm, because only pieces with material on exactly one side are used. So
-curves are taken whole where that is simpler. A curve of the border that is neither line nor arc is refused.
+of the slab. Extra curves do no harm, because only pieces with material on exactly one side are used. So whole
+curves are taken if that is simpler. A curve of the border that is neither line nor arc is refused.
 
 Folds and level cuts of a surface turned about an upright axis are circles, whatever curve is turned.
 
 Glossary
 --------
 slab : the part of a solid between two heights.
-leaning : of a face, neither level nor upright.
-fold : curve along which a leaning face stands upright, and so may bound what is seen of it from above. It is
+leaning : said of a face that is neither level nor upright.
+fold : curve along which a leaning face is upright, so that the curve may bound the face's projection. It is
     the contour generator of computer vision (Cipolla and Giblin, "Visual Motion of Curves and Surfaces",
     2000).
 turned surface : a curve turned about an axis, as of a part from the lathe.
-ring : a torus; it lies when its axis is level.
+ring : a torus; a lying ring has a level axis.
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Parts in STEP files, or in shapes of another library: the outline of a prismatic part, in mm.
 
 The outline is the silhouette along an axis: all (x, y) at which the part has material at some height. Round
-pegs parallel to the axis touch a part just there. It is computed as the union of the sections of all layers,
-of level faces, and of the sections where leaning faces meet or fold. Each of these lies in the silhouette,
-and afterwards every face is tested for points outside the union. Or the outline is the section at a height
-that the user chose. Shapes of Open CASCADE that another library has made are solids seen along an axis, or
-flat faces, which are taken as they are.
+pegs parallel to the axis touch the part on the border of the silhouette. It is computed as the union of the
+sections of all layers, of level faces, and of the sections where leaning faces meet or fold. Each of these
+lies in the silhouette, and afterwards every face is tested for points outside the union. Instead, the outline
+may be the section at a height that the user chose. Shapes of Open CASCADE that another library has made are
+solids seen along an axis, or flat faces, which are taken as they are.
 """
 
 from __future__ import annotations
@@ -134,10 +134,10 @@ def read_step(
         for "y". With a minus before it the part lies on its other side, turned over like a page.
     section_height : take the section at this height in mm above the part's lowest point, instead of the
         silhouette.
-    part_number : which solid to take of several, its number from 1 by decreasing volume, or its name; the
-        largest when None.
-    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
-        ``Drawing``.
+    part_number : number, from 1 by decreasing volume, or name of the solid to take from several; the largest
+        when None.
+    fit : largest distance in mm of lines and arcs from true curves; with None such curves are replaced
+        provisionally, see ``Drawing``.
 
     Raises
     ------

@@ -1,8 +1,8 @@
-"""The solids of a STEP file, in mm, with what the file calls them.
+"""The solids of a STEP file, in mm, with their names.
 
 A solid may be named itself, by its product, and by the places in which assemblies use the product. The
-nearest of these names that says something is taken. That is its own where a product has several solids, else
-that of the product, else that of what the product is in.
+nearest meaningful name is used: the solid's own if a product has several solids, else that of the product,
+else that of the assembly around it.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class Solid:
     shape : Open CASCADE's solid, in mm.
     volume : volume in mm³.
     low, high : corners (x, y, z) of its bounding box in mm.
-    name : as the file calls it; empty where it does not.
+    name : name in the file; empty if it has none.
     """
 
     number: int

@@ -1,17 +1,16 @@
 """Strips: the segments of an outline by height, each with the band of heights that all of its points have in
 common.
 
-A segment runs from one place to the next at which the border turns off, a run of heights begins, ends,
-splits, merges or jumps, or the longest run becomes long enough to be touched. It is halved until its band is
-at least half as long as the longest run over it. All of that is the same however the part lies in its file.
+The border is cut at corners, where a run of heights begins, ends, splits, merges or jumps, and where the
+longest run becomes long enough to be touched. Each segment is halved until its band is at least half as long
+as the longest run above it. The result does not depend on the part's position in its file.
 
 Glossary
 --------
-run : a range of heights, as long as can be, at all of which walls stand over a place; see
-    ``files.step.bands``.
+run : a maximal range of heights that walls cover above a place; see ``files.step.bands``.
 band : a range of heights within one run at every place of a segment.
 stretch : neighbouring pieces of one carrier over which no run jumps.
-touched : where the longest run is at least as long as the shortest band that may be touched.
+touched : said of a place where the longest run is at least as long as the shortest band that may be touched.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""How high pegs reach beside a solid where the user does not say it, but the pegs' diameter is known.
+"""The height of pegs beside a solid if the user does not give it but the pegs' diameter is known.
 
-A dowel that stands out far bends. So pegs are no higher than they must be to touch half of what pegs of any
-height could. They are dowels that are sold, which sit 1.5 diameters deep (SOLID, "Which height").
+A dowel that stands out far bends. So pegs are only as high as needed to touch half of the border that pegs of
+the best height could touch. They are dowels that are sold, which sit 1.5 diameters deep (SOLID, "Which
+height").
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ ROUNDED = 1e-9
 
 @frozen
 class UsualPegHeight:
-    """The height of pegs that is taken where the user gives none.
+    """The default height of pegs.
 
     Parameters
     ----------
@@ -51,8 +52,8 @@ class UsualPegHeight:
 
     @property
     def remarks(self) -> list[str]:
-        """A sentence on how high pegs are and why, with how to
-        have taller ones; empty if they are as tall as the part.
+        """A sentence on the pegs' height, its reason, and how to get taller pegs; empty if they are as tall
+        as the part.
         """
         if self.is_whole:
             return []
@@ -84,7 +85,7 @@ def choose_usual_height(
 
     Parameters
     ----------
-    rows : ranges of peg heights with what they offer; not used for a prism.
+    rows : ranges of peg heights with their outlines; not used for a prism.
     diameter : diameter of the pegs.
     room : head room kept free above the pegs.
     least : shortest band that may be touched.

@@ -46,10 +46,10 @@ def read_svg(
 
     Parameters
     ----------
-    unit : the length of one user unit; None to go by the file's physical size.
+    unit : the length of one user unit; None to use the file's physical size.
     usual_unit : the length of one user unit for a file without a physical size, where ``unit`` is None.
-    fit : largest distance in mm of lines and arcs from true curves; None keeps a proposal in their place, see
-        ``Drawing``.
+    fit : largest distance in mm of lines and arcs from true curves; with None such curves are replaced
+        provisionally, see ``Drawing``.
     budget : work and time that may still be spent on the file; None gives the usual budget for a file of this
         size.
 
