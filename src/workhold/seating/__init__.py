@@ -1,1 +1,3 @@
-"""Seating: where else a part can rest on a fixture's pegs, and from where closing leads into its pose."""
+"""Seating: the other places where a part can rest on a fixture's pegs, and the starting poses from which
+closing leads into the fixture's pose.
+"""

@@ -1,17 +1,17 @@
 """Pegs that press a part along one line or along parallel lines: equilibria in closed form.
 
-Two pegs press along one line where it is a common normal of the two boundary pieces that they touch, or where
-they sit in pockets. Let one peg stand at a fixed height above the other, and let d be the distance of their
-places on the part. It is counted along the outward normal at the peg that moves, and is negative where both
-press from between, as in a hole. The jaw separation grows with d. So equilibria are the critical points of d
-over the places on both pieces. With the pieces' curvatures kappa (positive where convex) the second
-derivatives of d are 1 / d - kappa along each piece, and the mixed one is -1 / d.
+Two pegs press along one line if that line is a common normal of the two boundary pieces that they touch, or
+if they sit in pockets. Let one peg be at a fixed height above the other, and let d be the distance between
+their places on the part. It is measured along the outward normal at the moving peg, and is negative if both
+pegs press outward from inside the part, as in a hole. The jaw separation grows with d. So equilibria are the
+critical points of d over the places on both pieces. With the pieces' curvatures kappa (positive where convex)
+the second derivatives of d are 1 / d - kappa along each piece, and the mixed one is -1 / d.
 
 Three contacts with parallel normals also balance: two pegs of one jaw on a line and an arc, and a third peg
-on a line parallel to the first. There the chord between the two pegs of the jaw is at a tangency, and its
-instant centre is infinitely far. The jaw separation S then depends on the orientation alone, because two of
-the three contacts lie on parallel lines. The orientation has an extremum along the chord's curve, so S has
-one too.
+on a line parallel to the first. Then the chord between the two pegs of the jaw is at a tangency, and its
+instant centre is at infinity. The jaw separation S then depends on the orientation alone, because two of the
+three contacts lie on parallel lines. The orientation has an extremum along the chord's curve, so S has one
+too.
 
 Glossary
 --------
@@ -104,8 +104,8 @@ class AntipodalContacts:
 def find_antipodal_contacts(boundary: ObstacleBoundary) -> list[AntipodalContacts]:
     """Return all antipodal contacts of a part.
 
-    A fixed peg can stand at the first place, and a peg of the jaw or clamp that moves at the second. Two
-    parallel lines and two concentric arcs have infinitely many antipodal contacts; those are left out.
+    A fixed peg can stand at the first place, and a peg of the moving jaw or clamp at the second. Two parallel
+    lines and two concentric arcs have infinitely many antipodal contacts; those are left out.
     """
     standing, moving = range(*boundary.parts[0]), range(*boundary.parts[1])
     found = [
@@ -156,8 +156,8 @@ def compute_curvature(row: Array) -> float:
 def find_place_with_normal(row: Array, ux: float, uy: float, x: float, y: float) -> tuple[float, float]:
     """Return the point (in mm) on the line or circle of a piece at which the outward normal is (ux, uy).
 
-    All points of a line have the same normal: there it is the foot of the perpendicular from (x, y), which is
-    ignored for an arc.
+    All points of a line have the same normal: on a line the result is the foot of the perpendicular from (x,
+    y). For an arc (x, y) is ignored.
     """
     if row[IS_ARC] != 0.0:
         return row[X] + row[SIGN] * row[RADIUS] * ux, row[Y] + row[SIGN] * row[RADIUS] * uy

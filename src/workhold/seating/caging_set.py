@@ -1,14 +1,15 @@
-"""How far a part can lie off its seat and still come home: the cage, its extremes, and the placing.
+"""How far from its seat a part may lie so that closing still leads into the seat: the cage, its extremes, and
+the placing.
 
-A pose belongs to the cage if closing the jaws from it leads into the seat. The placing is how far off its
-seat a part can be put anywhere and still get there. It is found on a grid of orientations and heights, among
-poses in which no peg enters the part while the jaws are opened, and is exact up to the grid's step. The
-extremes of the cage are found by following paths that begin in the seat and in such poses.
+A pose belongs to the cage if closing the jaws from it leads into the seat. The placing is the largest
+distance such that closing leads into the seat from every pose within that distance. It is found on a grid of
+orientations and heights, among poses in which no peg enters the part while the jaws are opened, and is exact
+up to the grid's step. The extremes of the cage are found by following paths that begin in the seat and in
+such poses.
 
-At an extreme something holds the part back: the contacts balance a pull in that direction, perhaps with the
-jaw separation S at its largest value. Closing the jaws from an extreme leads home
-(``kernels.seating.closing``), so no extreme that is found lies outside the cage. That none is missed is not
-proven but sampled: ``model.seating.CAGE_SHORT``.
+At an extreme the contacts balance a pull in that direction, possibly with the jaw separation S at its largest
+value. From each extreme, closing the jaws is shown to lead into the seat (``kernels.seating.closing``), so no
+extreme lies outside the cage. Completeness is not proven but sampled: ``model.seating.CAGE_SHORT``.
 
 Glossary
 --------
@@ -55,9 +56,10 @@ class PoseExtents:
     closing : the jaws and the part between them.
     seat : (4,) configuration of the seat: theta, x, y, S.
     most : the largest S in mm.
-    come_home : returns, for configurations (N, 4), whether closing the jaws from each leads into the seat.
+    come_home : function that takes configurations (N, 4) and returns whether closing the jaws from each leads
+        into the seat.
     reach : (3, 2) least and greatest difference from the seat: turn in radians, shift in x and in y in mm.
-    ends : (N, 4) configurations in the cage at which paths ended.
+    ends : (N, 4) end points of paths, as configurations in the cage.
     """
 
     closing: ClosingMotion
@@ -69,9 +71,7 @@ class PoseExtents:
 
     @property
     def farthest(self) -> Array:
-        """Six of ``ends`` as rows (6, 4): those with the least theta, x and y, then those with the
-        largest.
-        """
+        """Six of ``ends`` as rows (6, 4): those with the least theta, x and y, then those with the largest."""
         return np.array(
             self.ends[np.append(self.ends[:, :3].argmin(axis=0), self.ends[:, :3].argmax(axis=0))]
         )
@@ -95,8 +95,8 @@ class PoseExtents:
                 return
 
     def follow_aims(self, configs: Array, aims: Array, longest: float) -> tuple[Array, NDArray[np.bool_]]:
-        """Return the last configuration in the cage on each of N paths, each moving as far as it can along an
-        aim.
+        """Follow N paths in the cage, each as far as possible along an aim; return the last configuration of
+        each.
 
         Parameters
         ----------
@@ -148,8 +148,8 @@ class CagingSet:
     closing : the jaws about the part.
     seat : (4,) configuration.
     seats : (M, 4) configurations of all seats.
-    opening : in mm, slightly less than to the pass.
-    to_pass : (3,) turn in radians and shifts in mm from the seat to the pass, which is at the cage's edge.
+    opening : opening of the jaws in mm, slightly less than up to the pass.
+    to_pass : (3,) turn in radians and shifts in mm from the seat to the pass, where the cage opens.
     arm : R, largest distance in mm of a point of the silhouette from the centre of its box.
     """
 
@@ -164,8 +164,8 @@ class CagingSet:
         """Return poses on a grid of orientations and heights in which no peg enters the part, nearest first.
 
         Each row of the (N, 5) array is: distance from the seat in mm, theta, x, y, S (the jaw separation in
-        mm). The grid extends to both sides by ``half`` (2,): radians in theta and mm in y. It lies about the
-        seat, or about ``middle``, a configuration (4,) with the seat's x and S. The middle of its heights
+        mm). The grid extends by ``half`` (2,) to both sides: radians in theta and mm in y. Its centre is the
+        seat or, if given, ``middle``, a configuration (4,) with the seat's x and S. The middle of its heights
         rises by ``lean`` mm per radian. See ``kernels.seating.free_space.write_free_poses`` for the distance.
         """
         out = np.empty((12 * CELLS * CELLS, 5))
@@ -194,7 +194,7 @@ class CagingSet:
 
     @property
     def extents(self) -> PoseExtents:
-        """The extremes of the poses of the cage, as far as paths lead to them; computed at each access."""
+        """The extremes of the poses of the cage that paths reach; computed at each access."""
         reach = np.stack([np.minimum(self.to_pass, 0.0), np.maximum(self.to_pass, 0.0)], axis=1)
         found = PoseExtents(self.closing, self.seat, self.seat[3] + self.opening, self.find_homecoming, reach)
         found.widen(self.seat[None])
@@ -206,7 +206,7 @@ class CagingSet:
         return found
 
     def list_path_starts(self, found: PoseExtents) -> Array:
-        """Return configurations (N, 4) in the cage from which the search for its extremes goes on.
+        """Return configurations (N, 4) in the cage from which to continue the search for its extremes.
 
         They are the farthest configurations in ``found``, and free poses in the cage: the range of turns and
         heights in ``found`` is divided into cells, and the poses with the least and the largest x in each

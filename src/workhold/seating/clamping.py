@@ -1,26 +1,26 @@
-"""How a part is clamped: the reading on what moves, the order of tightening, and the sticking friction.
+"""How a part is clamped: the reading at the jaw or clamp, the order of tightening, and the sticking friction.
 
 The reading is the length by which a user sees in which seat the part rests: an opening, a stroke, or the
 place of a tip.
 
-Into two clamps a part is pushed against its locators by hand, then clamped. The locators alone fix the pose,
-and neither clamp holds the part alone. So it is not known from where one clamp would bring the part home:
-there is no opening, no reading and no cage. Known are the order of tightening, and the locators on which each
-clamp alone does not press.
+With two clamps, a part is pushed against its locators by hand, then clamped. The locators alone fix the pose,
+and neither clamp holds the part alone. So there is no opening, no reading and no cage, since it is not known
+from which poses one clamp would bring the part into the seat. The instructions give the order of tightening,
+and the locators on which each clamp alone does not press.
 
-With little friction a part cannot stick near its seat. For a vise, or one clamp, it can stick from the
-friction mu on at which three of the four contacts balance the jaw with forces in their friction cones.
+With little friction a part cannot stick near its seat. For a vise, or one clamp, it can stick if the friction
+is at least the mu at which three of the four contacts balance the jaw with forces in their friction cones.
 Contact i presses with h (-n + s mu t), |s| <= 1. Three forces balance where the determinant of their wrenches
 is zero. At the least mu either all three |s| are 1, or one contact has no force. For given signs of s the
-determinant is a cubic in mu. Where less friction suffices, the jaw's share of the forces vanishes at the
-least mu: the three contacts lock with any force. That mu is found by halving. Reference: V.-D. Nguyen,
+determinant is a cubic in mu. If even less friction suffices, the jaw's share of the forces vanishes at the
+least mu: the three contacts lock with any force. That mu is found by bisection. Reference: V.-D. Nguyen,
 "Constructing force-closure grasps", International Journal of Robotics Research 7 (1988).
 
 Two clamps push with forces in a given ratio. Near the pose both tips touch, and a part that is not in the
-pose is off some locator. So the least mu is sought at which contacts without one of the three locators
-balance the clamps in their friction cones. As cones grow with mu, halving finds it. Contacts of poses that
-approach the fixture's pose approach the fixture's contacts, and forces with the sum 1 have a limit. So below
-that mu the part cannot stick near the pose.
+pose has no contact with some locator. So the result is the least mu at which the contacts without one of the
+three locators balance the clamps in their friction cones. As cones grow with mu, bisection finds it. Contacts
+of poses that approach the fixture's pose approach the fixture's contacts, and forces with the sum 1 have a
+limit. So below that mu the part cannot stick near the pose.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ class Gauge:
 
     Parameters
     ----------
-    fixture, toolkit : the fixture, and the toolkit that it is made of.
+    fixture, toolkit : the fixture, and its toolkit.
     """
 
     fixture: Fixture
@@ -130,7 +130,7 @@ class Gauge:
         return self.compute_reading(self.fixture.travel + self.toolkit.clamping) > self.setting.length
 
     def place_pegs(self, travelled: float) -> tuple[Peg, ...]:
-        """Return all of the fixture's pegs, with the jaw or clamp that moves put to another travel.
+        """Return all of the fixture's pegs with the moving jaw or clamp at another travel.
 
         Parameters
         ----------
@@ -172,10 +172,10 @@ PRECISION = 1e-9
 def find_sticking_friction(points: Array, normals: Array, right: Array) -> float:
     """Return the least friction coefficient at which two or three of four contacts can balance the jaw force.
 
-    With less friction the part slides on. The result is inf where the contacts balance at no coefficient.
+    With less friction the part slides on. The result is inf if the contacts balance at no coefficient.
 
     ``points`` (4, 2) are places in mm and ``normals`` (4, 2) unit vectors out of the part, both in the
-    closing frame. ``right`` (4,) is 1 for contacts with pegs of the jaw that moves, else 0.
+    closing frame. ``right`` (4,) is 1 for contacts with pegs of the moving jaw, else 0.
     """
     size = max(float((points.max(axis=0) - points.min(axis=0)).max()), SMALLEST)
     contacts = (
@@ -189,11 +189,11 @@ def find_sticking_friction(points: Array, normals: Array, right: Array) -> float
 
 
 def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """Return the least friction coefficient at which a part under two clamps can stick off one of its
-    locators.
+    """Return the least friction coefficient at which a part under two clamps can stick without touching one
+    of its locators.
 
-    That is where the two clamps, with forces in their working ratio, balance while one of the locators has no
-    force. The result is inf where they do not at any coefficient up to ``MOST_FRICTION``.
+    At that coefficient the two clamps, with forces in their working ratio, balance while one of the locators
+    has no force. The result is inf if they do not balance at any coefficient up to ``MOST_FRICTION``.
     """
     ratio = compute_clamp_force_ratio(fixture)
     touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
@@ -216,7 +216,7 @@ def find_sticking_friction_of_two(fixture: Fixture, workpiece: Workpiece, toolki
 
 
 def balances_without_a_locator(edges: Array, share: Array, ratio: float) -> bool:
-    """Return whether two clamps can balance on some two of the three locators.
+    """Return whether two clamps can balance on two of the three locators.
 
     If a balance without negative forces exists, there is one with no more forces above zero than equations
     (V. Chvatal, *Linear Programming*, 1983, chapter 3). So all choices of that many forces are tried.
@@ -258,9 +258,9 @@ class HandLoading:
 
     Parameters
     ----------
-    fixture, toolkit : the fixture, and the toolkit that it is made of.
-    sticking_friction : friction coefficient. With less, both clamps at their working ratio push a part that
-        is a little off a locator back to it. It is inf where they do at any friction, and None (not computed)
+    fixture, toolkit : the fixture, and its toolkit.
+    sticking_friction : friction coefficient below which both clamps, at their working ratio, push a part that
+        is slightly off a locator back to it. It is inf if they do so at any friction, and None (not computed)
         for pegs with a flat.
     """
 
@@ -348,7 +348,7 @@ class HandLoading:
         return f"Pull at a slip of paper at each of these: {touched}. {out}"
 
     def describe_hold(self) -> str:
-        """Return the sentence that tells to hold the part until both clamps are tight.
+        """Return the instruction to hold the part until both clamps are tight.
 
         It names the locators on which the clamp that is tightened first does not press the part.
         """
@@ -408,8 +408,8 @@ def plan_hand_loading(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) 
 
 
 def name_place(peg: Peg, toolkit: Toolkit) -> str:
-    """Return the words for the place of a locator: its hole, or, for one end of a wall contact, the wall and
-    the side of the end.
+    """Return the words for the place of a locator: its hole; for one end of a wall contact, the wall and the
+    side of that end.
     """
     carrier = toolkit.find_carrier(peg.carrier)
     if carrier.contact.is_placed:
@@ -418,8 +418,8 @@ def name_place(peg: Peg, toolkit: Toolkit) -> str:
 
 
 def name_places(pegs: Sequence[Peg], toolkit: Toolkit) -> list[str]:
-    """Return the words for the places of some pegs; where both ends of a wall contact are among them, the
-    wall once.
+    """Return the words for the places of some pegs. The wall is named once if both ends of its contact are
+    among them.
     """
     carriers = [toolkit.find_carrier(peg.carrier) for peg in pegs]
     walls = [one.noun for one in carriers if not one.contact.is_placed]

@@ -1,16 +1,16 @@
-"""Where closing the jaws leads from a configuration, and the descent paths off the passes of subsets of pegs.
+"""The end of closing the jaws from a configuration, and the descent paths from passes of subsets of pegs.
 
 Without friction the part moves so that the separation falls as fast as the contacts allow: M. A. Peshkin and
 A. C. Sanderson, "Minimization of energy in quasi-static manipulation", IEEE Transactions on Robotics and
 Automation 5 (1989).
 
 The descent paths of a subset of pegs are followed once, for all patterns that contain the subset. Such a path
-is also a descent path of the pattern up to where another peg of the pattern would enter the part. From there
-on it is followed with all pegs.
+is also a descent path of the pattern, up to the point where another peg of the pattern would enter the part.
+From that point it is followed with all pegs.
 
 Glossary
 --------
-descent path : a path off a saddle along which a function falls, here the separation as the jaws close: J.
+descent path : a path from a saddle along which a function falls, here the separation as the jaws close: J.
     Milnor, *Morse Theory* (1963).
 descent cache : a store of descent paths already followed, as of a function's values: D. Michie, "Memo
     functions and machine learning", Nature 218 (1968).
@@ -75,7 +75,7 @@ def fill_rows(width: int, room: int, kernel: Callable[..., int], *arguments: Any
 def ensure_room(rows: NDArray[Any], count: int, more: int) -> NDArray[Any]:
     """Return an array with room for ``more`` rows after the first ``count`` rows of ``rows``.
 
-    It is ``rows`` itself where it is long enough, else a longer array with a copy of these ``count`` rows.
+    It is ``rows`` itself if that is long enough, else a longer array with a copy of these ``count`` rows.
     """
     if count + more <= len(rows):
         return rows
@@ -134,8 +134,8 @@ class ClosingMotion:
     def close_from(
         self, configs: Array, first: float | Array, seats: Array = NO_SEATS, level: float | None = None
     ) -> tuple[Array, NDArray[np.int8]]:
-        """Return where closing the jaws leads from configurations (N, 4) of theta, x, y and the jaw
-        separation S.
+        """Return the configurations in which closing the jaws ends, for starting configurations (N, 4) of
+        theta, x, y and the jaw separation S.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class ClosingMotion:
         tuple
             Three arrays: the nodes (M, 10) of all paths, one path after the other, see
             ``kernels.seating.columns``; the index (N + 1,) of each path's first node, with M at the end; how
-            each path ends (N,).
+            each path ends (N,), see ``kernels.seating.closing``.
         """
         room = USUAL * len(configs)
         while True:
@@ -254,7 +254,8 @@ class ClosingMotion:
     def find_leaving_at_stop(
         self, starts: Array, ends: Array, stopped: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
-        """Return for each of N paths whether it met the stop, and the part can be taken away at an end of the path.
+        """Return for each of N paths whether it met the stop and the part can be taken away at one of its
+        ends.
 
         ``starts`` and ``ends`` (N, 4) are configurations, ``stopped`` (N,) is True for paths that met the
         stop. A part that can be taken away at the start counts as outside, wherever closing leads.
@@ -269,7 +270,7 @@ ROOM = 65_536
 
 
 def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
-    """Return where the two descent paths from each of N passes begin.
+    """Return the starts of the two descent paths from each of N passes.
 
     They are configurations (2 N, 4) and first step lengths in mm (2 N, 2): rows 2 n and 2 n + 1 are the two
     sides of pass n. ``rows`` (N, 24) are the passes as candidates. ``size`` is the part's in mm. A candidate
@@ -284,8 +285,8 @@ def find_descent_starts(rows: Array, size: float) -> tuple[Array, Array]:
 class DescentCache:
     """The descent paths followed so far, of all subsets of pegs on a part.
 
-    Entries never move once written. So a thread that has read ``counts`` can read the entries while another
-    thread adds more.
+    Written entries never move. So a thread that has read ``counts`` can read the entries while another thread
+    adds more.
 
     Parameters
     ----------
@@ -293,7 +294,7 @@ class DescentCache:
     nodes : (M, 10) nodes of all paths, see ``kernels.seating.columns``.
     begins : (W + 1,) index of each path's first node, with the number of all nodes at the end.
     how : (W,) how each path ends, see ``kernels.seating.closing``.
-    counts : how many candidates, nodes and paths there are; the arrays may be longer.
+    counts : numbers of candidates, nodes and paths; the arrays may be longer.
     """
 
     numbers: IntArray = field(factory=lambda: np.zeros((0, 2), np.int64))
@@ -362,7 +363,7 @@ class DescentPaths:
 
     @cached_property
     def seats(self) -> Array:
-        """The configurations (M, 4) of those candidates that are certainly seats, where closing ends."""
+        """Configurations (M, 4) of the candidates that are certainly seats: closing ends there."""
         every = self.candidates
         is_seat = (every[:, DOUBT] == 0.0) & ((every[:, SECOND] > 0.0) | (every[:, CONTACTS] == 4.0))
         return np.asarray(every[is_seat][:, CONFIG])

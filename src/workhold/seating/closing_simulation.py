@@ -1,7 +1,7 @@
-"""Closing the jaws from where a part was put: the path that it takes, to be watched, and what it ends in.
+"""Simulation of closing the jaws on a part that was put somewhere: its path, for display, and its end.
 
-The path is followed without friction by ``seating.closing``, from one level of S to the next. Levels are
-evenly spaced, as a vise is closed, and there are more of them where the part moves far between two.
+``seating.closing`` follows the path without friction, from one level of S to the next. Levels are evenly
+spaced, as a vise closes steadily; further levels are added where the part moves far between two.
 
 Glossary
 --------
@@ -53,7 +53,7 @@ class ClosingSimulation:
 
     Parameters
     ----------
-    poses : of the part, one after the other; of the part turned over where that was asked for.
+    poses : poses of the part, one after the other; poses of the part turned over if that was asked for.
     travels : travel of the jaw or clamp in mm at each pose, such as the jaw separation.
     ending : one of :data:`ENDINGS`.
     seat : the seat in which the part ended, of those given; None for any other end.
@@ -74,15 +74,15 @@ def simulate_closing(
     turned_over: bool = False,
     is_cancelled: Callable[[], bool] = lambda: False,
 ) -> ClosingSimulation:
-    """Return the motion of a part while a fixture's jaws close on it, from the pose where it was put.
+    """Return the motion of a part while a fixture's jaws close on it, from a given starting pose.
 
     Parameters
     ----------
     seats : seats of the fixture, see :class:`workhold.model.seating.Seating`.
-    pose : where the part was put. With ``turned_over`` it is the pose of the part turned over (x to -x in its
-        own frame).
-    opening : how much wider than in the fixture the jaws are open at first, or how far the clamp is drawn
-        back, in mm.
+    pose : starting pose of the part. With ``turned_over`` it is the pose of the part turned over (x to -x in
+        its own frame).
+    opening : distance in mm by which the jaws are open at the start, beyond the fixture's opening, or by
+        which the clamp is drawn back.
     is_cancelled : called between steps; once it returns True, only the last pose is added.
 
     Raises
@@ -127,9 +127,9 @@ class CenterFrame:
 
     Parameters
     ----------
-    middle : of the box in the part's own coordinates, in mm.
+    middle : centre of the box in the part's own coordinates, in mm.
     turned_over : whether the part is turned over.
-    frame : leads to the toolkit's frame and back.
+    frame : change to the toolkit's frame and back.
     """
 
     middle: tuple[float, float]
@@ -167,12 +167,13 @@ class CenterFrame:
 def measure_entered_depth(
     solver: SeatingSolver, fixture: Fixture, pattern: Pattern, config: Array, turned_over: bool
 ) -> float:
-    """Return how deep in mm a peg or a wall is inside the part in a configuration (4,); 0 where none is.
+    """Return the depth in mm to which a peg or a wall is inside the part in a configuration (4,); 0 if none
+    is.
 
     Raises
     ------
     InputError
-        Where that is deeper than ``ENTERS`` peg radii.
+        If it is deeper than ``ENTERS`` peg radii.
     """
     rows = solver.outline.rows
     points = pattern.place_pegs(config[None])[0] * ([-1.0, 1.0] if turned_over else [1.0, 1.0])
@@ -219,7 +220,7 @@ def follow_descent_path(
 
 
 def follow_to_level(closing: ClosingMotion, path: list[Array], level: float, halvings: int) -> None:
-    """Follow a descent path on to the value ``level`` of the jaw separation S (mm), and append to ``path`` in
+    """Follow a descent path to the value ``level`` of the jaw separation S (mm), and append to ``path`` in
     place.
 
     Where the part moves far, the stretch of S is halved, up to ``halvings`` times, so that more
@@ -248,8 +249,7 @@ def classify_ending(
     how: int,
     seats: Sequence[Seat],
 ) -> tuple[str, Seat | None]:
-    """Return (1) which of :data:`ENDINGS` a path has, and (2) the seat of ``seats`` in which it ended, or
-    None.
+    """Return (one of :data:`ENDINGS` for a path, the seat of ``seats`` in which it ended or None).
 
     ``config`` (4,) is its last configuration, and ``how`` the code of ``kernels.seating.closing`` for its
     end.

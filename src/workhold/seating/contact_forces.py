@@ -1,11 +1,11 @@
-"""Forces of the contacts of candidates, how well they balance, how near all else is, and a check of it.
+"""Contact forces of candidates, the residual of their balance, the clearance of all other pegs, and an
+independent check.
 
 The check does not depend on how equilibria are found: it tests that contacts touch, press and balance, from a
 pose and its contacts alone. Every pass is checked before a capture opening is derived from it.
 
-It is proven that fixtures are seats. So where a fixture is missing among the seats found for its own pegs,
-the search for seats has missed it, and perhaps others. The fixture is then added as a candidate with four
-contacts.
+Fixtures are proven to be seats. So if a fixture is missing among the seats found for its own pegs, the search
+for seats has missed it, and perhaps others. The fixture is then added as a candidate with four contacts.
 
 Reference: E. Rimon and J. W. Burdick, "Mobility of bodies in contact, part I", IEEE Transactions on Robotics
 and Automation 14 (1998).
@@ -159,7 +159,7 @@ def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Patte
 def solve_contact_forces(
     boundary: ObstacleBoundary, pattern: Pattern, row: Array, size: float
 ) -> tuple[Array, float, int]:
-    """Return the contact forces of a candidate ``row`` (24,), and how well they balance.
+    """Return the contact forces of a candidate ``row`` (24,), and the residual of their balance.
 
     Three results: (1) the forces (n,) of the n contacts per unit of jaw force, by least squares; (2) the
     largest error of the equations of balance, in which moments are divided by ``size`` (mm); (3) the rank of
@@ -208,7 +208,8 @@ def is_equilibrium(row: Array, closing: ClosingMotion) -> bool:
 
 
 def is_balanced(wrenches: Sequence[Sequence[float]]) -> bool:
-    """Return whether forces at two or three contacts that only press can balance a unit of jaw force.
+    """Return whether a unit of jaw force can be balanced by forces at two or three contacts that can only
+    press.
 
     Each wrench (4,) is that of a unit force at a contact: force in x and y, moment, and force on the moving
     jaw.

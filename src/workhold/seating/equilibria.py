@@ -1,4 +1,4 @@
-"""All equilibria of a pattern of pegs and a part, sorted into seats, passes and what is loose or not settled.
+"""All equilibria of a pattern of pegs and a part, sorted into seats, passes, loose sets and doubtful ones.
 
 In an equilibrium two or three of a pattern's pegs balance the part, or pegs of one jaw fix it. The same
 subset of pegs, up to a shift, occurs in many patterns of one lattice (``seating.pattern``), so its equilibria
@@ -6,8 +6,8 @@ are cached with the part.
 
 Glossary
 --------
-equilibrium : a pose and separation in which contacts with forces that press balance; without friction a
-    critical point of the separation (E. Rimon and A. Blake 1999, see ``seating.pattern``).
+equilibrium : a pose and separation in which pressing contact forces balance; without friction a critical
+    point of the separation (E. Rimon and A. Blake 1999, see ``seating.pattern``).
 seat : an equilibrium at which the separation has a strict minimum, so that closing ends there.
 pass : a saddle of the separation, through which a cage opens; the puncture grasp of Rimon and Blake.
 """
@@ -99,7 +99,7 @@ class SubsetEquilibria:
         or three contacts balance in each. For pegs of one jaw, three contacts fix the part instead, at the
         place that it has at separation 0.
     motions : self-motions: how the part can move between these pegs at one separation.
-    descents : descent paths from the candidates, as far as they were followed.
+    descents : descent paths from the candidates that have been followed so far.
     """
 
     first: int
@@ -141,7 +141,7 @@ class SubsetCache:
 
     @classmethod
     def find_for_boundary(cls, boundary: ObstacleBoundary) -> SubsetCache:
-        """Return the cache of a part; where it is full, replace it with an empty one, and return that.
+        """Return the cache of a part; if it is full, replace it with an empty one and return that.
 
         Callers that already hold the full cache can go on using it.
         """
@@ -158,7 +158,7 @@ class SubsetCache:
 def find_subset_equilibria(
     kept: SubsetCache, boundary: ObstacleBoundary, subset: PegSubset, size: float
 ) -> SubsetEquilibria:
-    """Return the equilibria of a subset of pegs, from the cache ``kept``; where they are not in it, find and
+    """Return the equilibria of a subset of pegs from the cache ``kept``; if they are not there, compute and
     add them.
 
     ``size`` is the part's in mm.
@@ -182,7 +182,7 @@ def find_subset_equilibria(
 
 
 def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Return the equilibria of two pegs, one of each jaw: (1) candidates (N, 24), (2) self-motions.
+    """Return the equilibria of two pegs, one of each jaw: (candidates (N, 24), self-motions).
 
     The candidates are antipodal contacts whose forces balance. In a self-motion the part moves while the
     separation stays the same: it slides along parallel faces or turns about concentric arcs. A candidate is a
@@ -196,8 +196,8 @@ def pair_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) 
 
 
 def find_triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: float) -> Found:
-    """Return the equilibria of three pegs, two of one jaw and one of the other: (1) candidates (N, 24), (2)
-    self-motions.
+    """Return the equilibria of three pegs, two of one jaw and one of the other: (candidates (N, 24),
+    self-motions).
 
     A candidate is a configuration with contacts and forces that may be an equilibrium, see
     ``kernels.seating.columns``.
@@ -231,8 +231,8 @@ def find_triple_equilibria(boundary: ObstacleBoundary, subset: PegSubset, size: 
 
 
 def find_jaw_equilibria(boundary: ObstacleBoundary, subset: PegSubset, _: float) -> Found:
-    """Return poses in which pegs of one jaw alone fix the part by three contacts: (1) candidates (N, 24), (2)
-    no motions.
+    """Return (candidates (N, 24) in which pegs of one jaw alone fix the part by three contacts, no
+    self-motions).
 
     Three pegs touch once each, or one of two pegs touches twice in a pocket. The last argument is ignored. A
     candidate is a configuration with contacts and forces that may be an equilibrium, see
@@ -318,8 +318,8 @@ def find_wall_slides(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manif
 
 
 def name_both_edge_ends(row: Array, wall: WallEquilibria, side: HullSide) -> None:
-    """Add contacts to a candidate (24,) in place, so that both ends of a hull edge on the wall are among
-    them.
+    """Extend the contacts of a candidate (24,) in place, so that both ends of a hull edge on the wall are
+    among them.
 
     The candidate must already have a contact with the wall. Nothing is added where it has four contacts; the
     contact's piece is set to the start of the edge in any case. A candidate is a configuration with contacts
@@ -336,8 +336,8 @@ def name_both_edge_ends(row: Array, wall: WallEquilibria, side: HullSide) -> Non
 def find_wall_turns(finder: ManifoldFinder, wall: WallEquilibria) -> list[Manifolds]:
     """Return the loose sets in which a part on a wall turns about the common centre of concentric arcs.
 
-    One arc lies on the wall and one touches the clamp's tip. Two cases: (a) a third arc touches the locator;
-    (b) the locator does not touch, and the tip pushes towards the wall.
+    One arc lies on the wall and one touches the clamp's tip. Either a third arc touches the locator, or the
+    locator does not touch and the tip pushes towards the wall.
     """
     out, (ux, uy, off) = list[Manifolds](), wall.half_plane
     (lx, ly), (tx, ty) = finder.pattern.pegs[LOCATOR].tolist(), finder.pattern.pegs[TIP].tolist()
@@ -489,7 +489,7 @@ def sort_equilibria(
 
 
 def number_first_of_equals(rows: Array, turn: float, shift: float) -> NDArray[np.int64]:
-    """Return the indices of candidates (N, 24), without those that are equal to a candidate before them.
+    """Return the indices of candidates (N, 24), leaving out each one that equals an earlier candidate.
 
     The indices are in ascending order of separation. Two candidates are equal if they have the same number of
     contacts and their configurations differ by less than ``turn`` radians and ``shift`` mm. A candidate is a

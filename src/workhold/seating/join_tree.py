@@ -1,15 +1,14 @@
-"""The join tree of the separation: which cages join at which pass, where a part gets out, and rest poses.
+"""The join tree of the separation: the passes at which cages join or the part gets out, and the rest poses.
 
-Both descent paths from each pass are followed to their ends. While the jaws are opened, cages grow, and two
-cages become one where the lowest pass between them is reached. So passes are taken in ascending order of
-their separation. Rest poses of the part as drawn and turned over are computed once for all fixtures on the
-same pegs.
+Both descent paths from each pass are followed to their ends. While the jaws open, cages grow, and two cages
+become one at the lowest pass between them. So passes are taken in ascending order of their separation. Rest
+poses of the part as drawn and turned over are computed once for all fixtures on the same pegs.
 
 Glossary
 --------
-join tree : which components of sublevel sets of a function join at which saddle: H. Carr, J. Snoeyink and U.
-    Axen, "Computing contour trees in all dimensions", Computational Geometry 24 (2003).
-place : what a descent path ends in: a seat, a loose set, something not settled, the outside or the stop.
+join tree : the tree that tells which components of a function's sublevel sets join at which saddle: H. Carr,
+    J. Snoeyink and U. Axen, "Computing contour trees in all dimensions", Computational Geometry 24 (2003).
+place : the end of a descent path: a seat, a loose set, a doubtful configuration, the outside or the stop.
 loose set : an equilibrium manifold, along which nothing locates the part.
 join : a pass, with the places that both of its descent paths end in.
 rest pose : a pose in which a part comes to rest by itself: K. Goldberg, B. Mirtich, Y. Zhuang, J. Craig, B.
@@ -99,8 +98,8 @@ def compute_subset_shifts(found: Equilibria) -> Array:
 def select_free_paths(
     found: Equilibria, passes: IntArray, closing: ClosingMotion, shifts: Array
 ) -> tuple[IntArray, IntArray, IntArray]:
-    """Return the two kept descent paths of each of N passes, and how far each is free of the pattern's other
-    pegs.
+    """Return the two cached descent paths of each of N passes, and the part of each that is free of the
+    pattern's other pegs.
 
     Three arrays (2 N,): the path's number in the cache; the index of its subset; its last node at which no
     other peg is inside the part. Paths not yet in the cache are followed and added. ``passes`` are indices of
@@ -152,9 +151,9 @@ class JoinTree:
     ----------
     seats : (N, 24) seats.
     loose : (L, 24) loose sets (the part rests anywhere along a motion) from which no path leads down.
-    slack : (K, 24) loose sets with three contacts or more from which a path leads down, so that the part may
-        rest there or not; they are not places.
-    doubtful : (M, 4) configurations in which the part may rest or not: error bounds did not decide.
+    slack : (K, 24) loose sets with three or more contacts from which a path leads down. Whether the part
+        rests there is not known; they are not places.
+    doubtful : (M, 4) configurations for which error bounds do not decide whether the part rests there.
     passes : (J, 24) passes in ascending order of separation.
     joined : (J, 2) numbers of the places at which the two descent paths of each pass end.
     own : (N + L,) for each seat and loose set its own number; for a seat that lies on a loose set, the number
@@ -198,7 +197,7 @@ class JoinTree:
 
     @cached_property
     def first_joins(self) -> IntArray:
-        """The index of the lowest pass at which each place's cage joins another cage, -1 where none does.
+        """The index of the lowest pass at which each place's cage joins another cage, -1 if there is none.
 
         The array (N + L + M + 2,) is indexed by the number of the place: its last two entries are the stop
         (-2) and the outside (-1).
@@ -214,8 +213,8 @@ class JoinTree:
         return CageJoin(float(self.passes[number, SEPARATION]), self.passes[number], (one, two))
 
     def find_first_join(self, place: int) -> CageJoin | None:
-        """Return the lowest pass at which the cage of a seat or loose set joins another cage; None where none
-        does.
+        """Return the lowest pass at which the cage of a seat or loose set joins another cage; None if there
+        is none.
         """
         number = int(self.first_joins[self.own[place]])
         return None if number < 0 else self.make_join(number)
@@ -228,8 +227,8 @@ class JoinTree:
         return np.append(self.passes[:, SEPARATION], inf)[self.first_joins[self.own]]
 
     def find_escape_separation(self, place: int) -> float | None:
-        """Return the least separation in mm at which a part can get from a place to the outside; None where
-        it cannot.
+        """Return the least separation in mm at which a part can get from a place to the outside; None if it
+        cannot.
         """
         number = find_pass_to_outside(
             self.joined, int(self.own[place]), np.empty(len(self.first_joins), np.int64)
@@ -245,7 +244,8 @@ class ManifoldDescents:
     ----------
     lying : (L,) indices of sets from which no path leads down.
     falling : (G,) indices of sets from which a path leads down.
-    slack : indices of those of ``falling`` with three contacts or more, on which a part may still stay.
+    slack : those indices of ``falling`` whose sets have three or more contacts; a part may still rest on
+        them.
     dividing : (D,) indices of sets with two paths that lead down, one to each side.
     both : for the paths from dividing sets, starts (2 D, 4), ends (2 D, 4) and how they end (2 D,).
     one : for the first path from each falling set, starts (G, 4), ends (G, 4) and how it ends (G,).
@@ -329,11 +329,11 @@ class RestPoses:
 
     Parameters
     ----------
-    rows : (N, 24) candidates; where it is not known whether the part rests, only the configuration is filled
-        in.
+    rows : (N, 24) candidates; if it is not known whether the part rests there, only the configuration is
+        filled in.
     kinds : (N,) indices into ``KINDS``.
-    depths : (N,) by how much in mm the jaws must open before the part can leave for another place; inf where
-        it never can, and where that is not known.
+    depths : (N,) opening in mm beyond which the part can leave for another place; inf if it never can, and if
+        that is not known.
     turned_over : (N,) whether it is a pose of the part turned over.
     """
 

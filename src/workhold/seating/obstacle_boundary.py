@@ -1,9 +1,10 @@
-"""The boundary on which a peg's centre lies while it touches a part, and where it has inner corners.
+"""The boundary on which a peg's centre lies while it touches a part, and the inner corners of this boundary.
 
 Glossary
 --------
-obstacle boundary : the boundary of the C-obstacle that a part is to the centre of a peg: T. Lozano-Perez,
-    "Spatial planning: a configuration space approach", IEEE Transactions on Computers C-32 (1983).
+obstacle boundary : the boundary of the region that a part forbids to the centre of a peg (its C-obstacle): T.
+    Lozano-Perez, "Spatial planning: a configuration space approach", IEEE Transactions on Computers C-32
+    (1983).
 piece : a straight or circular part of the boundary; a peg's centre on it touches one face, or one corner of
     the part.
 pocket : a corner of the boundary in which a peg touches two pieces at once.
@@ -44,14 +45,14 @@ PAST_POCKET = 0.05
 class ObstacleBoundary:
     """The boundary on which the centres of pegs lie while they touch a part.
 
-    Where the pegs that move have another radius than those that stand still, each kind has its own boundary,
-    and the pieces of both stand one after the other.
+    If moving pegs have another radius than fixed ones, each kind has its own boundary, and the pieces of the
+    two follow one after the other.
 
     Parameters
     ----------
     rows : (N, 10) straight and circular pieces in mm, relative to the centre of the part's bounding box.
-    parts : (2, 2) first and past-the-last index of the pieces for pegs that stand still (row 0), and for pegs
-        that move (row 1).
+    parts : (2, 2) first and past-the-last index of the pieces for fixed pegs (row 0) and for moving pegs (row
+        1).
     touches : for each piece, the face or corner of the part that a peg on it touches.
     pockets : (V, 6) corners in which a peg touches two pieces at once: place (x, y), and the outward normals
         of the two pieces.
@@ -75,8 +76,8 @@ class ObstacleBoundary:
 
     @classmethod
     def from_workpiece(cls, workpiece: Workpiece, radii: tuple[float, float]) -> ObstacleBoundary:
-        """Return the boundary of a part for pegs with two radii in mm (above 0): those that stand still,
-        those that move.
+        """Return the boundary of a part for pegs with two radii in mm (above 0): that of fixed pegs, that of
+        moving pegs.
         """
         rows, touches, pockets, whose, starts = (
             list[Array](),
@@ -107,7 +108,7 @@ class ObstacleBoundary:
         )
 
     def can_touch(self, side: int, piece: int) -> bool:
-        """Return whether a piece belongs to pegs that stand still (``side`` 0) or that move (``side`` 1)."""
+        """Return whether a piece belongs to fixed pegs (``side`` 0) or moving pegs (``side`` 1)."""
         return bool(self.parts[side, 0] <= piece < self.parts[side, 1])
 
     def make_obstacles(self, pattern: Pattern, size: float, stop: float) -> Obstacles:
@@ -156,8 +157,8 @@ class ObstacleBoundary:
         both.
 
         Parameters are in mm on a line and in radians on an arc, 0 at the middle. The range is slightly longer
-        than the piece, and longer by ``PAST_POCKET`` mm at a pocket, so that near a pocket both of its pieces
-        keep a peg off.
+        than the piece. At a pocket it is longer by ``PAST_POCKET`` mm, so that both pieces of the pocket keep
+        a peg off near it.
         """
         rows = self.rows
         hair = np.where(rows[:, IS_ARC] != 0.0, END_SLACK / np.maximum(rows[:, RADIUS], END_SLACK), END_SLACK)
@@ -195,7 +196,7 @@ class ObstacleBoundary:
 
     @cached_property
     def rings(self) -> list[tuple[list[tuple[int, float]], list[tuple[int, float]]]]:
-        """For each centre, two lists of arcs: those for pegs that stand still, and those for pegs that move.
+        """For each centre, two lists of arcs: those for fixed pegs and those for moving pegs.
 
         An arc is given by its index and its radius in mm, negative where it is concave. Centres without arcs
         for both kinds of pegs are left out.
@@ -241,7 +242,7 @@ class ObstacleBoundary:
         return {first: number_centers(self.loose[first:end]) for first, end in self.parts.tolist()}
 
     def find_once(self, find: Callable[[ObstacleBoundary], Found], anew: bool = False) -> Found:
-        """Return ``find(self)``, which is called only once and whose result is kept.
+        """Return ``find(self)`` from a cache; it is called only the first time.
 
         With ``anew``, call it again and keep the new result.
         """
@@ -254,9 +255,8 @@ class ObstacleBoundary:
         """Return the curves of a chord of given length in mm between two pegs that both touch the part;
         cached.
 
-        ``side`` is 0 for pegs that stand still, 1 for pegs that move. The tail of a chord is on the piece
-        with the lower index, and the chord's direction in the part's frame (alpha) is used as its orientation
-        (psi).
+        ``side`` is 0 for fixed pegs, 1 for moving pegs. The tail of a chord is on the piece with the lower
+        index, and the chord's direction in the part's frame (alpha) is used as its orientation (psi).
         """
         first, end = self.parts[side].tolist()
         key = round(length, 9), first

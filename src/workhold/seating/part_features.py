@@ -1,8 +1,9 @@
-"""The features of a part that pegs and a straight wall may touch, and whether it covers its place in others.
+"""The features of a part that pegs and a straight wall may touch, and whether the part covers the same area
+in two poses.
 
 The boundary of (part + disc of the peg radius), on which a peg's centre lies, consists of offset faces and
 arcs around convex corners, and has pockets. A wall is touched by corners, arcs and edges of the convex hull.
-The silhouette tells whether the part covers the same area in two poses, also where it is turned over.
+The silhouette tells whether the part covers the same area in two poses, even if it is turned over in one.
 
 Reference: T. Lozano-Perez, "Spatial planning: a configuration space approach", IEEE Transactions on Computers
 C-32 (1983).
@@ -204,17 +205,17 @@ class PartHull:
 
     @property
     def limits(self) -> Array:
-        """The directions in radians, in [0, 2 pi), at which the hull's arcs begin and end; without whole
-        circles.
+        """The directions in radians, in [0, 2 pi), at which the hull's arcs begin and end; whole circles are
+        left out.
         """
         arcs = self.rows[(self.rows[:, 2] > 0.0) & (self.rows[:, 5] > -1.0)]
         middle, half = np.arctan2(arcs[:, 4], arcs[:, 3]), np.arccos(arcs[:, 5])
         return np.concatenate([middle - half, middle + half]) % tau
 
     def compute_reach(self, angles: Array) -> Array:
-        """Return how far in mm each hull piece extends in each direction: (N, H) for N angles in radians.
+        """Return the extent in mm of each hull piece in each direction: (N, H) for N angles in radians.
 
-        It is -inf where the direction is outside the piece's range of normals.
+        It is -inf if the direction is outside the piece's range of normals.
         """
         normal = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         there = normal @ self.rows[:, 3:5].T >= self.rows[:, 5] - SUPPORTS
@@ -282,7 +283,7 @@ class Silhouette:
         Raises
         ------
         InputError
-            As :func:`refuse_own_outlines`.
+            In the case of :func:`refuse_own_outlines`.
         """
         refuse_own_outlines(workpiece)
         segments = [face.segment for face in workpiece.faces]
@@ -301,7 +302,7 @@ class Silhouette:
         """Return for each configuration in ``others`` (N, 4) whether the part covers the same area there as
         in ``one`` (4,).
 
-        ``turned_over`` (N,) is True where the part is turned over in the configuration.
+        ``turned_over`` (N,) is True for configurations in which the part is turned over.
         """
         out = np.empty(len(others), np.int8)
         write_same_cover(one, others, turned_over.astype(np.int8), self.rows, self.points, SAME_PLACE, out)

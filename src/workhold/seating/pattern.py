@@ -1,19 +1,19 @@
 """Patterns of four pegs in their closing frame, for which seating is solved once for all fixtures on them.
 
-A toolkit is turned by quarter turns until what moves in it opens along x, and clamps as its separation S
-falls. Where a toolkit clamps by opening, S is the travel with the other sign. So a vise that clamps by
-opening is turned by half a turn, and a clamp that pushes along a column by a quarter.
+A toolkit is turned by quarter turns until its moving carrier opens along x and clamps as the separation S
+falls. If a toolkit clamps by opening, S is minus the travel. So a vise that clamps by opening is turned by
+half a turn, and a clamp that pushes along a column by a quarter.
 
 A subset of two or three pegs has the same places, up to a shift, in many patterns of one lattice. While S is
-free, its equilibria depend only on how the pegs of each jaw stand to each other, and on how much higher one
-jaw's pegs are. The pattern's other pegs only decide whether a pose is free.
+free, its equilibria depend only on the relative places of the pegs of each jaw, and on the height of one
+jaw's pegs above the other's. The pattern's other pegs only decide whether a pose is free.
 
 Glossary
 --------
-closing frame : a task frame, which lies as the task is described most easily: M. T. Mason, "Compliance and
+closing frame : a task frame, chosen so that the task is described most easily: M. T. Mason, "Compliance and
     force control for computer controlled manipulators", IEEE Transactions on Systems, Man, and Cybernetics 11
     (1981).
-stop : the smallest separation, at which what moves is stopped without the part.
+stop : the smallest separation, at which the moving carrier stops without a part.
 subset of contacts : two or three contacts of a grasp that balance without the others: E. Rimon and A. Blake,
     "Caging planar bodies by one-parameter two-fingered gripping systems", International Journal of Robotics
     Research 18 (1999).
@@ -61,7 +61,7 @@ class ClosingFrame:
     ----------
     quarters : number of quarter turns counter-clockwise by which vectors are turned from the toolkit's frame
         to the closing frame.
-    sign : 1 where the separation S is the travel, -1 where S is minus the travel.
+    sign : 1 if the separation S is the travel, -1 if S is minus the travel.
     """
 
     quarters: int
@@ -69,7 +69,7 @@ class ClosingFrame:
 
     @classmethod
     def from_toolkit(cls, toolkit: Toolkit, carrier: Carrier) -> ClosingFrame:
-        """Return the closing frame of a toolkit in which ``carrier`` is what moves."""
+        """Return the closing frame of a toolkit whose moving carrier is ``carrier``."""
         assert carrier.travel is not None
         x, y = (toolkit.clamping * part for part in carrier.travel.unit)
         return cls(-QUARTERS.index((round(x) + 0.0, round(y) + 0.0)) % 4, float(toolkit.clamping))
@@ -107,7 +107,7 @@ class ClosingFrame:
 
 @frozen(eq=False)
 class CommonToPatterns:
-    """The data that are equal in the patterns of all fixtures whose pegs stand on the same carriers.
+    """The common data of the patterns of all fixtures whose pegs are on the same carriers.
 
     Parameters
     ----------
@@ -158,8 +158,7 @@ def refuse_unseated(toolkit: Toolkit) -> None:
     Raises
     ------
     InputError
-        For two clamps, straps or flat jaws; where no peg stands still; for pegs with a flat; for pegs of
-        radius 0.
+        For two clamps, straps or flat jaws; without a fixed peg; for pegs with a flat; for pegs of radius 0.
     """
     words = "the seating is worked out only"
     if toolkit.flat_jaws is not None:
@@ -197,14 +196,14 @@ class Pattern:
     Parameters
     ----------
     pegs : (K, 2) places of the pegs in mm at separation 0.
-    right : (K,) 1 for pegs that move, such as those of the right jaw, 0 for pegs that stand still.
-    radii : in mm, of the pegs that stand still and of those that move.
+    right : (K,) 1 for moving pegs, such as those of the right jaw, 0 for fixed pegs.
+    radii : radii in mm of the fixed pegs and of the moving ones.
     stop, widest : the least and the largest separation in mm; -inf and inf where there is no limit.
     frame : the change from the toolkit's frame to the closing frame.
     numbers : for each peg its index among the fixture's pegs.
     half_plane : (x, y, coordinate) of a wall: the unit vector from the wall to the part, along x or y, and
         the wall's coordinate along that vector in mm. None without a wall.
-    gap : least distance in mm along x between pegs of the two jaws; None where none is prescribed.
+    gap : least distance in mm along x between pegs of the two jaws; None if none is prescribed.
     """
 
     pegs: Array
@@ -259,7 +258,7 @@ class Pattern:
         """Return the separations below and above ``separation`` (mm) at which a clamp's tip first meets a
         locator or the wall.
 
-        They are -inf and inf where it meets none.
+        They are -inf and inf if it meets none.
         """
         stop, widest = -inf, inf
         for tip in self.pegs[self.right == 1]:
@@ -282,26 +281,24 @@ class Pattern:
         return stop, widest
 
     def find_least_separation(self, diameter: float) -> float:
-        """Return the smallest separation in mm down to which a descent is followed: the stop, where there is
+        """Return the smallest separation in mm down to which a descent is followed: the stop, if there is
         one.
 
-        Without a stop it is so small that a part of this diameter (mm) cannot touch a peg that moves and a
-        peg that stands still at once.
+        Without a stop it is so small that a part of this diameter (mm) cannot touch a moving and a fixed peg
+        at once.
         """
         left, right = self.along_x
         return max(self.stop, min(left) - max(right) - diameter - sum(self.radii) - BEYOND)
 
     @property
     def along_x(self) -> tuple[list[float], list[float]]:
-        """The x coordinates in mm of (1) the pegs that stand still and (2) the pegs that move, at separation
-        0.
-        """
+        """The x coordinates in mm of (1) the fixed pegs and (2) the moving pegs, at separation 0."""
         left, right = (self.pegs[self.right == side, 0].tolist() for side in (0, 1))
         return left, right
 
     @cached_property
     def order(self) -> NDArray[np.int64]:
-        """The indices (K,) of the pegs that stand still, then of those that move, both from left to right."""
+        """The indices (K,) of the fixed pegs, then of the moving ones, both from left to right."""
         return np.lexsort((self.pegs[:, 1], self.pegs[:, 0], self.right))
 
     def make_key(self) -> tuple[object, ...]:
@@ -352,9 +349,9 @@ SLACK = 1e-6
 
 @frozen(eq=False, slots=False)
 class PegSubset:
-    """Some pegs of a pattern, in a frame of their own.
+    """Some pegs of a pattern, in their own frame.
 
-    In this frame the first peg is at the origin, and the first peg that moves is at x = 0 at separation 0.
+    In this frame the first peg is at the origin, and the first moving peg is at x = 0 at separation 0.
 
     Parameters
     ----------
@@ -385,7 +382,7 @@ class PegSubset:
 
     @property
     def is_of_a_jaw(self) -> bool:
-        """Whether all pegs belong to one jaw: all move, or all stand still."""
+        """Whether all pegs belong to one jaw: all are moving, or all are fixed."""
         return self.sides[0] == self.sides[-1]
 
     @cached_property
@@ -439,7 +436,7 @@ def round_length(x: float) -> float:
 
 @lru_cache(maxsize=SIDES)
 def list_subsets(pattern: Pattern) -> tuple[PegSubset, ...]:
-    """Return the subsets of a pattern's pegs in which a part can be in balance or fixed; cached.
+    """Return the subsets of a pattern's pegs that can balance or fix a part. The result is cached.
 
     These are all pairs of one peg of each jaw, the two pegs of a jaw that has exactly two, and all sets of
     three pegs.
@@ -451,7 +448,7 @@ def list_subsets(pattern: Pattern) -> tuple[PegSubset, ...]:
 
 @lru_cache(maxsize=SIDES)
 def list_jaw_subsets(pattern: Pattern) -> dict[int, PegSubset]:
-    """Return for each jaw (0 stands still, 1 moves) the subset of all its pegs; cached."""
+    """Return for each jaw (0 fixed, 1 moving) the subset of all its pegs. The result is cached."""
     sides = dict.fromkeys(pattern.right.tolist())
     return {
         side: PegSubset.from_pattern(pattern, np.flatnonzero(pattern.right == side).tolist())

@@ -1,13 +1,13 @@
-"""Self-motions of a part between pegs, and equilibrium manifolds: where it rests anywhere along them.
+"""Self-motions of a part between pegs, and equilibrium manifolds, along which the part rests anywhere.
 
 Glossary
 --------
-self-motion : a motion of a mechanism that leaves its output as it is, here of the part while the separation
-    stays: J. W. Burdick, "On the inverse kinematics of redundant manipulators: characterization of the
+self-motion : a motion of a mechanism that does not change its output; here a motion of the part at constant
+    separation: J. W. Burdick, "On the inverse kinematics of redundant manipulators: characterization of the
     self-motion manifolds", IEEE International Conference on Robotics and Automation (1989).
-equilibrium manifold : equilibria that are not isolated, with one separation, where a part is free along its
-    self-motions: a nondegenerate critical manifold of R. Bott, "Nondegenerate critical manifolds", Annals of
-    Mathematics 60 (1954).
+equilibrium manifold : a continuum of equilibria at one separation, along the self-motions of the part: a
+    nondegenerate critical manifold of R. Bott, "Nondegenerate critical manifolds", Annals of Mathematics 60
+    (1954).
 """
 
 from __future__ import annotations
@@ -69,16 +69,16 @@ LEAST_SHARE = 1e-9
 
 @frozen(eq=False)
 class SelfMotion:
-    """A motion of the part while the separation stays the same and some contacts last, as a sequence of
+    """A motion of the part at constant separation during which some contacts are kept, as a sequence of
     configurations.
 
     Parameters
     ----------
     configs : (N, 4) theta, x, y, S along the motion.
-    contacts : pairs (peg, piece) of the contacts that last.
+    contacts : pairs (peg, piece) of the contacts that are kept.
     is_closed : whether the motion is a loop: the last configuration is next to the first.
-    across : (2,) direction in x and y in which the part is free to leave the motion to both sides as the
-        separation falls; None where there is none.
+    across : (2,) direction in x and y in which the part can leave the motion, to both sides, as the
+        separation falls; None if there is none.
     """
 
     configs: Array
@@ -91,7 +91,7 @@ class SelfMotion:
 class OpposedLines:
     """Two parallel straight pieces with opposite outward normals.
 
-    The first is for a peg that stands still, the second for a peg that moves.
+    The first is for a fixed peg, the second for a moving one.
 
     Parameters
     ----------
@@ -99,8 +99,8 @@ class OpposedLines:
     width : distance in mm from the first to the second along the second's normal, negative where the normals
         point towards each other.
     angle : direction of the second's normal in radians.
-    low, high : the two lie side by side between these parameters of the first piece, in mm; low > high where
-        they do not.
+    low, high : the two overlap between these parameters of the first piece, in mm; low > high if they do not
+        overlap.
     """
 
     pieces: tuple[int, int]
@@ -149,7 +149,7 @@ def make_sliding_motion(
     line : row (10,) of the piece.
     low, high : parameters on the piece in mm between which the peg slides.
     s : separation in mm.
-    contacts : pairs (peg, piece) of the contacts that last.
+    contacts : pairs (peg, piece) of the contacts that are kept.
     """
     if high - low < SHORTEST or not pattern.is_reachable(s, SAME):
         return []
@@ -284,10 +284,10 @@ def find_motions_on_one_center(boundary: ObstacleBoundary, pattern: Pattern) -> 
 
 
 def is_balanced(normals: list[Point], moves: list[int]) -> bool:
-    """Return whether forces at three pegs that only press can balance the jaw force.
+    """Return whether forces at three pegs, which can only press, can balance the jaw force.
 
     ``normals`` are the outward normals of the three contacts, whose lines meet in one point; their lengths do
-    not matter. ``moves`` is 1 for a peg that moves, else 0.
+    not matter. ``moves`` is 1 for a moving peg, else 0.
     """
     (ax, ay), (bx, by), (cx, cy) = normals
     # As much of each as the other two span, which leaves nothing over, per unit of what presses along x.
@@ -382,7 +382,7 @@ class ManifoldFinder:
         """Return those motions on which the part is free in at least one configuration, with the pegs'
         clearances.
 
-        The part is free where no peg enters it.
+        The part is free if no peg enters it.
         """
         every = SelfMotions.allocate(len(motions), sum(len(motion.configs) for motion in motions))
         if not motions:

@@ -1,4 +1,6 @@
-"""The seating of a fixture: from how wide open it catches the part, and where else the part can rest."""
+"""The seating of a fixture: the largest opening from which it still catches the part, and the other places
+where the part can rest.
+"""
 
 from __future__ import annotations
 
@@ -65,7 +67,7 @@ class SeatingSolver:
 
     Parameters
     ----------
-    workpiece, toolkit : the part, and what it is held in.
+    workpiece, toolkit : the part, and the toolkit that holds it.
     """
 
     workpiece: Workpiece
@@ -89,8 +91,8 @@ class SeatingSolver:
     def find_join_trees(self, pattern: Pattern, missed: Sequence[Array] = ()) -> tuple[JoinTree, JoinTree]:
         """Return the join trees of a pattern: (1) for the part as drawn, (2) for the part turned over.
 
-        ``missed`` are candidates (24,) that are added to the seats of the first. A candidate is a
-        configuration with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
+        ``missed`` are candidates (24,) to add to the seats of the first tree. A candidate is a configuration
+        with contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         out = list[JoinTree]()
         for closing in (self.make_closing(pattern, turned_over) for turned_over in (False, True)):
@@ -101,11 +103,12 @@ class SeatingSolver:
         return out[0], out[1]
 
     def solve(self, fixture: Fixture, with_cage: bool = True) -> Seating:
-        """Return the opening up to which a fixture catches the part, and where else the part can rest.
+        """Return the seating of a fixture: the opening up to which it catches the part, and the other rest
+        poses.
 
         Parameters
         ----------
-        with_cage : whether cage and placing are computed, which takes about as long as all else.
+        with_cage : whether cage and placing are computed, which about doubles the time.
 
         Raises
         ------
@@ -122,8 +125,8 @@ class SeatingSolver:
     def place_in_pattern(self, fixture: Fixture, pattern: Pattern) -> FixtureInPattern:
         """Return a fixture with the join trees of its pattern.
 
-        The pattern is solved the first time. Where the fixture is missing among the seats found, it is added
-        to them, and the pattern is solved again.
+        The pattern is solved the first time. If the fixture is missing among the seats found, it is added to
+        them, and the pattern is solved again.
         """
         key = pattern.make_key()
         if key not in self.solved:
@@ -261,7 +264,7 @@ class FixtureInPattern:
 
     @cached_property
     def place(self) -> int | None:
-        """The index of the seat that is the fixture itself; None where it is not among the seats."""
+        """The index of the seat that is the fixture itself; None if it is not among the seats."""
         return self.find_own_candidate(self.trees[0].seats)
 
     def find_own_candidate(self, rows: Array) -> int | None:
@@ -291,8 +294,8 @@ class FixtureInPattern:
         """Return the poses of N configurations in the toolkit's frame, as arrays (N,): theta in [0, 360)
         degrees, x, y in mm.
 
-        ``configs`` (N, 4) are in the closing frame. Where ``turned_over`` (N,) is True, the pose is that of
-        the part turned over.
+        ``configs`` (N, 4) are in the closing frame. If ``turned_over`` (N,) is True, the pose is that of the
+        part turned over.
         """
         x, y = self.solver.workpiece.center
         across = np.where(turned_over, -x, x)
@@ -351,7 +354,7 @@ class FixtureInPattern:
         return tuple([seats[k] for k in np.lexsort((poses[0], rests.turned_over, separations)).tolist()])
 
     def make_seating(self, with_cage: bool) -> Seating:
-        """Return the seating of the fixture, with cage and placing where ``with_cage`` is True.
+        """Return the seating of the fixture, with cage and placing if ``with_cage`` is True.
 
         The fixture must be among the seats (``place`` is not None).
         """
@@ -414,7 +417,7 @@ class FixtureInPattern:
         """Return two results for a seat (4,): the cage in the toolkit's frame (degrees and mm), and the
         placing in mm.
 
-        The placing is how far off its seat the part can be put anywhere and still come home; see
+        The placing is the distance from the seat within which closing leads into it from every pose; see
         ``CagingSet.placing``.
         """
         around = self.make_caging_set(seat, join)
@@ -424,8 +427,7 @@ class FixtureInPattern:
         return Cage((float(turns[0]) * 180.0 / pi, float(turns[1]) * 180.0 / pi), x, y), around.placing
 
     def find_sticking_friction(self, row: Array) -> float:
-        """Return the least friction coefficient at which the part can stick near a seat; inf where it never
-        can.
+        """Return the least friction coefficient at which the part can stick near a seat; inf if it never can.
 
         ``row`` (24,) is the seat as a candidate. A candidate is a configuration with contacts and forces that
         may be an equilibrium, see ``kernels.seating.columns``.
@@ -436,15 +438,15 @@ class FixtureInPattern:
 
 
 def seatings(result: Result, fixtures: Sequence[Fixture] | int = 1, *, with_cage: bool = True) -> list[Any]:
-    """Return, for each fixture, the opening up to which it catches the part, and where else the part can
-    rest.
+    """Return for each fixture the opening up to which it catches the part, and the other places where the
+    part can rest.
 
-    Each result is a ``model.seating.Seating``. For toolkits with two clamps, into which the part is put by
-    hand, each result is a ``seating.clamping.HandLoading``, which says how.
+    Each result is a ``model.seating.Seating``. For toolkits with two clamps, each result is a
+    ``seating.clamping.HandLoading``: instructions to put the part in by hand.
 
     Parameters
     ----------
-    fixtures : the fixtures, or how many of the best.
+    fixtures : the fixtures, or the number of best fixtures.
     with_cage : whether cage and placing are computed.
 
     Raises

@@ -1,4 +1,4 @@
-"""Poses in which pegs of one jaw touch the part in two places: chord curves of pairs, and pockets.
+"""Poses in which pegs of one jaw touch the part in two places: chord curves of pairs of pegs, and pockets.
 
 Glossary
 --------
@@ -6,7 +6,7 @@ two-contact curve : all poses, up to the shift along x, in which two contacts of
     ``PAIR_LENGTH`` numbers, see ``kernels.seating.columns``. The contact space of two fingers: T. F. Allen,
     J. W. Burdick and E. Rimon, "Two-finger caging of polygonal objects using contact space search", IEEE
     Transactions on Robotics 31 (2015).
-slide : two contacts on parallel faces, which hold one orientation and so are not a curve over it.
+slide : two contacts on parallel faces. They fix the orientation, so they are not a curve over it.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class JawCurves:
     def from_boundary(cls, boundary: ObstacleBoundary, pegs: Array, right: NDArray[np.int64]) -> JawCurves:
         """Return the two-contact curves of K pegs of a jaw at places (K, 2) in mm, the first at the origin.
 
-        ``right`` (K,) is 1 for pegs that move, else 0; it is the same for all pegs.
+        ``right`` (K,) is 1 for moving pegs, else 0; all entries are equal.
         """
         made, slides = [make_pocket_rows(boundary, right)], list[tuple[float, ...]]()
         integers, reals, stretches = (
@@ -147,7 +147,7 @@ class JawCurves:
 
     @cached_property
     def after_one(self) -> tuple[Array, Array]:
-        """The rows and the slides of two pegs, numbered 1 and 2, where peg 0 is the single peg of the other
+        """The rows and the slides of two pegs, numbered 1 and 2; number 0 is for the single peg of the other
         jaw.
         """
         return self.number_rows_by_pegs(np.array([1.0, 2.0, -1.0]))
@@ -171,7 +171,7 @@ class JawCurves:
     def ordered(self) -> Array:
         """The cells in ascending order of LOW, the orientation at which they begin.
 
-        A cell that reaches beyond a whole turn is listed twice, the second time a turn lower.
+        A cell that extends beyond a whole turn is listed twice, the second time shifted down by a turn.
         """
         again = np.array(self.cells[self.cells[:, HIGH] > tau])
         again[:, [LOW, HIGH]] -= tau
@@ -180,9 +180,7 @@ class JawCurves:
 
     @classmethod
     def find_known(cls, boundary: ObstacleBoundary, subset: PegSubset) -> JawCurves:
-        """Return the curves of a subset of pegs of one jaw, from a cache kept with the part or newly
-        computed.
-        """
+        """Return the curves of a subset of pegs of one jaw; they are computed once and cached with the part."""
         kept = boundary.find_once(make_curve_cache)
         found = kept.get(subset.key)
         if found is None:
@@ -210,7 +208,7 @@ class TwoContactCurves:
     sought : the same with pieces slightly longer at both ends, for finding roots, so that none is missed at
         an end.
     slides : (S, 7) pairs of contacts on parallel faces, see ``kernels.seating.slides``.
-    jaws : for each jaw (0 stands still, 1 moves): its curves, the number of rows before its own rows, and the
+    jaws : for each jaw (0 fixed, 1 moving): its curves, the number of rows before its own rows, and the
         height (y) of its first peg in mm.
     """
 
@@ -238,7 +236,7 @@ class TwoContactCurves:
 
     @classmethod
     def from_one_jaw(cls, boundary: ObstacleBoundary, subset: PegSubset) -> TwoContactCurves:
-        """Return the curves of one jaw of a subset: that with two or more pegs.
+        """Return the curves of the jaw of a subset that has two or more pegs.
 
         There are no curves for a subset of one peg of each jaw.
         """
@@ -256,7 +254,9 @@ class TwoContactCurves:
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 
     def make_jaw_cells(self, right: int) -> JawCells:
-        """Return the cells of a jaw (``right`` 0 stands still, 1 moves) in the form that the kernels take."""
+        """Return the cells of a jaw (``right`` is 0 for the fixed jaw, 1 for the moving one) in the form that
+        the kernels take.
+        """
         known, before, height = self.jaws[right]
         return JawCells(known.ordered, before, height)
 
@@ -274,7 +274,7 @@ def make_held_parts(
 def make_pocket_rows(boundary: ObstacleBoundary, right: NDArray[np.int64]) -> Array:
     """Return a row of ``HeldPart.pairs`` for each peg in each pocket that it can touch (H, 7).
 
-    ``right`` (K,) is 1 for pegs that move, else 0.
+    ``right`` (K,) is 1 for moving pegs, else 0.
     """
     held = [
         (peg, pocket)

@@ -1,9 +1,9 @@
 """Equilibria between a straight wall, a locator and a clamp's tip.
 
-The wall is along x or y. Where a piece of the part's hull lies on it, one coordinate of the part's place
-follows from the orientation. The other follows from the locator on a piece, and the separation from the tip
-on a piece. So a part that stands on one piece of its hull and touches all three has one freedom. It balances
-where the normals of locator, tip and wall go through one point, which is where S is stationary over the
+The wall is along x or y. If a piece of the part's hull lies on it, the orientation determines one coordinate
+of the part's place. The locator's contact determines the other coordinate, and the tip's contact the
+separation. So a part that stands on one piece of its hull and touches all three has one degree of freedom. It
+balances if the normals of locator, tip and wall meet in one point; there S is stationary over the
 orientation. All such poses are isolated (``kernels.seating.wall_equilibria``). Four contacts are in closed
 form, or roots of polynomials (``kernels.seating.tip_in_pocket``).
 
@@ -108,9 +108,9 @@ class WallEquilibria:
         """The ranges of orientations in which the part stands on one hull piece: (piece, first, last), in
         radians.
 
-        Where the part rolls from one piece to the next, ranges overlap slightly, so that no orientation is
-        missed. Where it stands on a hull edge, ranges end slightly before, because the edge's other end
-        touches there too.
+        Ranges overlap slightly at orientations where the part rolls from one piece to the next, so that none
+        is missed. They end slightly before orientations in which the part stands on a hull edge, because the
+        edge's other end touches there too.
         """
         edges = np.array([side.angle for side in self.sides])
         angles = np.sort(np.concatenate([edges, self.boundary.hull.limits]))
@@ -312,7 +312,7 @@ class WallEquilibria:
     def find_tip_against_wall(self) -> Array:
         """Return candidates (N, 24) in which the tip alone presses the part against the wall.
 
-        The tip's normal points into the wall where a hull piece or a hull edge touches it. There are none
+        The tip's normal must meet the wall where a hull piece or a hull edge touches it. There are none
         unless the tip pushes towards the wall. A candidate is a configuration with contacts and forces that
         may be an equilibrium, see ``kernels.seating.columns``.
         """
@@ -368,11 +368,11 @@ class WallEquilibria:
 
 
 def compute_least_curvature(ahead: float, signed: float | None) -> tuple[float, float, float]:
-    """Return the least second derivative of the separation S, and its direction (turn, rise), for a tip
-    opposite a wall.
+    """Return the least second derivative of the separation S for a tip opposite a wall, and its direction
+    (turn, rise).
 
     The variables are the turn f of the part and the rise e of the tip above the hull piece on the wall. The
-    derivative is NaN where S falls in all directions.
+    derivative is NaN if S falls in all directions.
 
     The tip is ahead of the piece's centre by d = ``ahead`` (mm). Two cases: (a) it touches an arc of signed
     radius r = ``signed`` (mm, positive where convex), and is ahead by (d - r) cos f + sqrt(r^2 - (e - (d - r)
@@ -391,8 +391,8 @@ def compute_least_curvature(ahead: float, signed: float | None) -> tuple[float, 
 
 
 def add_turns_until_past(low: float, theta: float) -> float:
-    """Return the smallest angle in radians that is not below ``low`` and differs from ``theta`` by whole
-    turns (2 pi).
+    """Return the smallest angle in radians that is at least ``low`` and differs from ``theta`` by whole turns
+    (2 pi).
     """
     return theta + tau * ceil((low - theta) / tau)
 

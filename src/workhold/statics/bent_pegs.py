@@ -30,7 +30,7 @@ class BentPeg:
     hole : name of the peg's hole.
     peg : kind of peg, such as "locator".
     diameter : diameter of the peg.
-    height : height above the plate of the middle of the range in which the part can press on the peg.
+    height : middle of the range of heights above the plate at which the part can press on the peg.
     top : height above the plate of the top of this range.
     force : force on the peg.
     deflection, stress : deflection and bending stress with the force at ``height``.
@@ -59,7 +59,7 @@ class BentPegs:
     movement : largest movement of a point of the part by bending, in mm, with the forces at the pegs' middle
         heights.
     worst_movement : the same with the forces at the tops of the ranges of heights.
-    jaw_force : in N; None where not given: figures are then for a jaw force of 1 kN.
+    jaw_force : jaw force in N; None if not given: the figures are then for 1 kN.
     stress_limit, movement_limit : limits of the toolkit, in MPa and mm.
     """
 
@@ -91,13 +91,14 @@ class BentPegs:
         return self.jaw_force is not None and bool(is_beyond(self.movement, self.movement_limit))
 
     def describe_force(self, mover: str, unit: Unit) -> str:
-        """Return the force that the figures are for, in words, see :func:`describe_force`."""
+        """Return the force that the figures hold for, in words; see :func:`describe_force`."""
         return describe_force(self.jaw_force, mover, unit)
 
     def describe_bending(self, mover: str, unit: Unit, location_error: float | None = None) -> str:
         """Return a sentence on the largest deflection, the largest stress and the movement of the part.
 
-        ``mover`` is what presses, such as "jaw"; a ``location_error`` in mm is mentioned as well if given.
+        ``mover`` is the name of the carrier that presses, such as "jaw"; a ``location_error`` in mm is
+        mentioned as well if given.
         """
         most, hardest = self.most, self.hardest
         beside = (
@@ -160,7 +161,7 @@ def describe_force(jaw_force: float | None, mover: str, unit: Unit) -> str:
     Parameters
     ----------
     jaw_force : in N; None for the phrase "for each kN of …".
-    mover : what presses, such as "jaw".
+    mover : name of the carrier that presses, such as "jaw".
     """
     if jaw_force is not None:
         return f"at a {mover} force of {unit.format_force(jaw_force)}"
@@ -178,7 +179,7 @@ def compute_bent_pegs(
 ) -> BentPegs | None:
     """Return how far the pegs of a fixture bend.
 
-    None without pegs in holes of plates, and where the heights or forces on them are not known.
+    None without pegs in holes of plates, and if heights or forces on them are not known.
 
     Parameters
     ----------

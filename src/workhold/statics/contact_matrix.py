@@ -101,7 +101,7 @@ class ContactMatrices:
         part's movements in x, in y, and L times its turn, per unit of error of each contact. The last row is
         the pegs' forces per unit of jaw force. With two clamps (P = 5) only the locators move the part, and
         the last row is for the working ratio of the clamps' forces.
-    closing : (N, P, M) forces of all pegs per unit of the force of each of M moving things.
+    closing : (N, P, M) forces of all pegs per unit of the force of each of M moving carriers.
     """
 
     points: Array
@@ -134,9 +134,9 @@ class TouchableFeatures:
     starts : indices in ``features``: where the features of each carrier and face number begin (carrier by
         carrier, by face number in each), where each hull edge begins, and the end.
     segments : number of face numbers.
-    moving : (C,) 1 for a carrier that moves, 0 for others.
-    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame; zero for one that
-        stands still.
+    moving : (C,) 1 for a moving carrier, 0 for others.
+    directions : (C, 2) unit vector along which each carrier clamps, in the toolkit's frame; zero for a fixed
+        one.
     lies_flush : (C,) whether the carrier is a wall that the part lies flush on.
     flush : the ways in which the part can lie on a wall.
     """

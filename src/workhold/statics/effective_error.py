@@ -1,16 +1,16 @@
-"""The effective location error: the location error times factors for what a machinist would rather avoid.
+"""The effective location error: the location error times factors for drawbacks that a machinist would avoid.
 
-The factors are data (``FACTORS``); here it is determined which of them apply to a fixture.
+The factors are data (``FACTORS``); this module determines which of them apply to a fixture.
 
 Glossary
 --------
 angle class : 0 for a part at 0 degrees, 1 at 90, 180 and 270 degrees, 2 at any other angle. The angle is
     taken as it is written, rounded.
-asked for : a query asks to work from inside, in holes of the part, if it avoids every outer face or if the
-    toolkit clamps by opening.
-hangs over : a part hangs over plates with a known number of columns or rows if no shift of pegs and part by
-    whole holes that keeps the pegs on the plates brings the part within the plates along that direction.
-    Plates reach half a pitch beyond their outermost holes.
+asked for : holding from inside, in holes of the part, is asked for if the query avoids every outer face or
+    the toolkit clamps by opening.
+hangs over : a part hangs over the plates along a direction if no shift of the set-up by whole holes, with all
+    pegs on the plates, brings it within the plates. This needs a known number of columns or rows. Plates
+    reach half a pitch beyond their outermost holes.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ def classify_angles(theta: Array, beside: float = WRITTEN_ANGLE) -> IntArray:
 
 
 def find_unasked_faces(query: Query) -> BoolArray:
-    """Return a mask (S,) by face number: True for faces of holes where
-    the query does not ask to work from inside.
+    """Return a mask (S,) by face number: True for faces of holes if the query does not ask to hold the part
+    from inside.
 
     All are False if the toolkit clamps by opening, or if every outer face is avoided.
     """
@@ -69,12 +69,13 @@ def find_unasked_faces(query: Query) -> BoolArray:
 
 @frozen(eq=False)
 class EffectiveErrors:
-    """What computes the factors on the location error, and the effective errors, of the fixtures of a query.
+    """Computation of the factors on the location error, and of the effective errors, for the fixtures of a
+    query.
 
     Parameters
     ----------
     query : the query.
-    unasked : (S,) mask by face number of the faces of holes that the query does not ask to work from.
+    unasked : (S,) mask by face number of faces of holes that the query does not ask to use.
     lines : (S, 5) start (x, y), unit direction (x, y) and length of each straight face, by face number; NaN
         for other faces.
     corners : (C, 2) corners of the convex hull of the outline's joints.
@@ -90,7 +91,7 @@ class EffectiveErrors:
 
     @classmethod
     def from_query(cls, query: Query) -> EffectiveErrors:
-        """Return what computes the effective errors of the fixtures of a query."""
+        """Prepare the computation for the fixtures of a query."""
         every = query.workpiece.numbered
         lines = np.full((len(every.segments), 5), np.nan)
         for face in every.faces:
@@ -136,8 +137,8 @@ class EffectiveErrors:
         )
 
     def find_overhanging(self, table: FixtureTable) -> BoolArray:
-        """Return a mask (N,): True for fixtures whose part hangs over the
-        plates wherever the set-up stands on them.
+        """Return a mask (N,): True for fixtures whose part hangs over the plates at every place of the
+        set-up.
         """
         toolkit, out = self.query.toolkit, np.zeros(len(table), np.bool_)
         plates, travel = toolkit.plates, table.jaw_separation
@@ -164,8 +165,7 @@ class EffectiveErrors:
         return out
 
     def compute_extent(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """Return (1) the least and (2) the largest coordinate in mm of
-        each fixture's part along an axis, each (N,).
+        """Return (least, largest) coordinate in mm of each fixture's part along an axis, (N,) each.
 
         ``axis`` is 0 for x and 1 for y of the toolkit.
         """
@@ -179,8 +179,8 @@ class EffectiveErrors:
         return low + table.position[:, axis], high + table.position[:, axis]
 
     def count_spare_holes(self, table: FixtureTable, axis: int) -> tuple[Array, Array]:
-        """Return by how many holes a set-up can be moved (1) toward lower
-        and (2) toward higher numbers, each (N,).
+        """Return the numbers of holes by which a set-up can be moved (toward lower numbers, toward higher
+        numbers), (N,) each.
 
         ``axis`` is 0 for columns (x), 1 for rows (y).
         """

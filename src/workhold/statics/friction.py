@@ -66,7 +66,7 @@ MOST_CONDITION = 1e9
 
 @frozen(eq=False)
 class FrictionHold:
-    """A part between two flat jaws, as the linear programs of its loads need it.
+    """A part between two flat jaws, in the form for the linear programs of its loads.
 
     x runs along the jaws, y from the fixed to the moving jaw, z upward.
 
@@ -77,7 +77,7 @@ class FrictionHold:
     friction : the coefficient between jaws and part.
     stop_points : (K, 3) points in mm at which the work stop may push; empty without one.
     stop_way : 1 where the stop pushes toward +x, -1 toward -x.
-    parallels : places y in mm at which the two parallels bear the part; None for one at each jaw.
+    parallels : places y in mm of the two parallels under the part; None for one at each jaw.
     """
 
     fixed: PressedPatch
@@ -102,7 +102,7 @@ class FrictionHold:
         """Return the hold by two patches; ``stop_points`` are points (x, y,
         z) in mm on the work stop, if there is one.
 
-        ``parallels`` are the places y in mm at which parallels bear the part; None for one at each jaw.
+        ``parallels`` are the places y in mm of the parallels under the part; None for one at each jaw.
         """
         points = np.array(stop_points, np.float64).reshape(-1, 3)
         return cls(PressedPatch(fixed), PressedPatch(moving), opening, friction, points, stop_way, parallels)
@@ -130,8 +130,8 @@ class FrictionHold:
 
     @cached_property
     def pressing(self) -> Array:
-        """Wrenches (R, 6) that the R unit pressures of both jaws make
-        on the part, those of the fixed jaw first.
+        """Wrenches (R, 6) that the R unit pressures of both jaws exert on the part, those of the fixed jaw
+        first.
 
         The unit pressures are ``PressedFace.edges``.
         """
@@ -172,8 +172,8 @@ class FrictionHold:
 
     @cached_property
     def bearing(self) -> Array:
-        """Friction (C, R) that each of the C cells bears, per unit of
-        each of the R pressures of ``pressing``.
+        """Largest friction force (C, R) of each of the C cells, per unit of each of the R pressures of
+        ``pressing``.
         """
         own, other = (
             (self.friction * patch.compute_pressures(patch.cells.centre) * patch.cells.area).T
@@ -186,7 +186,7 @@ class FrictionHold:
 
     @cached_property
     def clamp_force_per_pressure(self) -> Array:
-        """Jaw force in N, (R,), that a unit of each pressure of ``pressing`` counts as.
+        """Jaw force in N, (R,), per unit of each pressure of ``pressing``.
 
         It is 0 for pressures of the fixed jaw, 1 for those of the moving jaw.
         """
@@ -209,9 +209,8 @@ class HeldByFriction(Protocol):
     pushing : (K, 6) wrenches of K unit forces without friction.
     pressing : (R, 6) wrenches of R unit pressures.
     rubbing : (C, D, 6) wrenches of unit friction forces in each of C cells, in D directions.
-    bearing : (C, R) friction force that each cell bears, per unit of each pressure of ``pressing``.
-    clamp_force_per_pressure : (R,) clamp force that a unit of each pressure counts as: 1 for pressures that
-        clamp, else 0.
+    bearing : (C, R) largest friction force of each cell, per unit of each pressure of ``pressing``.
+    clamp_force_per_pressure : (R,) clamp force per unit of each pressure: 1 for pressures that clamp, else 0.
     """
 
     @property
@@ -231,19 +230,19 @@ class MotionProgram:
     """The linear program for the motion of the part that a load drives
     hardest, dual to that for the least clamp force.
 
-    The least clamp force is the largest power of the load on a motion (6,) under these conditions: (a) each
-    pressure that does not clamp, with its friction, and each force without friction do no work against the
-    motion; (b) each pressure that clamps does at most 1 per unit. In each cell friction takes the direction
-    in which it works most, so each pressure stands for very many linear conditions. Conditions are added as
-    the last motion breaks them, until none is broken; all loads of one grip share them.
+    The least clamp force is the largest power of the load on a motion (6,) under these conditions: (a)
+    pressures that do not clamp, with their friction, and forces without friction do no work against the
+    motion; (b) each pressure that clamps does work of at most 1 per unit. In each cell friction acts in the
+    direction of its largest work, so each pressure gives very many linear conditions. A condition is added
+    when the last motion breaks it, until none is broken; all loads of one grip share them.
 
     Parameters
     ----------
     grip : pressures, forces and friction that hold the part.
     conditions : (K, 6) coefficients of the program's rows.
-    answered : clamp forces that suffice for loads, by the bytes of the rounded load.
+    answered : clamp forces already computed, by the bytes of the rounded load.
     motions : (L, 6) optimal motions of L solved loads.
-    inverses : (L, 6, 6) for each of these motions the inverse of the matrix of the six conditions it meets.
+    inverses : (L, 6, 6) for each of these motions the inverse of the matrix of its six active conditions.
     """
 
     grip: HeldByFriction
@@ -267,8 +266,8 @@ class MotionProgram:
         return self.find_driven_motion(load, enough)[0]
 
     def find_driven_motion(self, load: Array, enough: float = -np.inf) -> tuple[float | None, Array]:
-        """Return (1) the least clamp force in N that balances a load (6,),
-        and (2) the motion (6,) that the load drives.
+        """Return (the least clamp force in N that balances a load (6,), the motion (6,) that the load
+        drives).
 
         The force is the power of the load on the motion. It is None where no force balances the load; the
         motion is then one that no clamp force resists. If the least force is at most ``enough``, any force
@@ -310,8 +309,8 @@ class MotionProgram:
         Where the least force is at most ``most``, a larger force up to ``most`` may be returned instead. Once
         a force is above ``most``, the remaining ones stay NaN.
 
-        A motion that meets six conditions is the answer for every load in the cone of these conditions'
-        forces, so one linear program answers all loads in that cone.
+        A motion with six active conditions is optimal for every load in the cone of these conditions' forces.
+        So one linear program answers all loads in that cone.
         """
         keys = [load.tobytes() for load in loads.round(SAME_DIGITS)]
         # What only suffices must not stand for the least.
@@ -331,8 +330,8 @@ class MotionProgram:
         return out
 
     def remember_cone(self, load: Array) -> None:
-        """Store the last motion and its six conditions for answering more
-        loads; nothing where they do not determine it well.
+        """Store the last motion and its six active conditions, to answer further loads; skip this if they
+        determine the motion badly.
         """
         rows = self.program.find_bounding_rows() if load.any() else None
         if rows is None or np.linalg.cond(self.conditions[rows]) > MOST_CONDITION:
@@ -344,8 +343,8 @@ class MotionProgram:
     def answer_in_cones(
         inverses: Array, motions: Array, driven: Array, left: NDArray[np.intp], out: Array
     ) -> NDArray[np.intp]:
-        """Write into ``out`` (N,) the forces of the loads that lie in a
-        known cone; return the indices of the other loads.
+        """Write into ``out`` (N,) the forces for loads in a known cone; return the indices of the other
+        loads.
 
         Parameters
         ----------
@@ -379,19 +378,19 @@ class MotionProgram:
 
 
 def is_pressed_all_over(fixed: JawPatch, moving: JawPatch) -> bool:
-    """Return whether both jaws can press all over what they touch with equal and opposite forces.
+    """Return whether both jaws can press over their whole contacts with equal and opposite forces.
 
-    They can where their kerns meet; a kern is the set of possible centres of pressure.
+    They can if their kerns meet; a kern is the set of possible centres of pressure.
     """
     one, other = PressedPatch(fixed), PressedPatch(moving)
     return hulls_meet(one.centres, other.centres, KERN_SLACK)
 
 
 def find_least_peak_pressure(fixed: JawPatch, moving: JawPatch, force: float) -> float | None:
-    """Return the smallest possible value of the largest pressure in
-    MPa, at a jaw force in N and without loads.
+    """Return the least possible peak pressure in MPa at a jaw force in N, without loads.
 
-    None where a jaw touches along a line (unbounded pressure), and where a jaw cannot press all over.
+    None for a jaw that touches along a line (unbounded pressure), and for a jaw that cannot press over its
+    whole contact.
     """
     if fixed.is_line or moving.is_line or not is_pressed_all_over(fixed, moving):
         return None

@@ -1,4 +1,5 @@
-"""How near the tools of a program come to a vise with flat jaws, and where its parallels stand clear of them.
+"""The clearance between the tools of a program and a vise with flat jaws, and places of parallels clear of
+the tools.
 
 A tool is clear of a body of the vise where, at heights up to the body's top, its cylinders keep the program's
 clearance from the body's box.
@@ -45,7 +46,7 @@ Array = NDArray[np.float64]
 
 @frozen
 class ToolNearVise:
-    """Where a tool comes nearest to a body of the vise.
+    """The place where a tool comes nearest to a body of the vise.
 
     Parameters
     ----------
@@ -76,7 +77,9 @@ def move_into_part(pose: Pose, points: Array) -> Array:
 
 
 def list_approaches(program: Program, bodies: Iterable[ViseBody], pose: Pose) -> list[ToolNearVise]:
-    """Return where a tool comes nearest to each of the bodies, without bodies that no tool comes down to."""
+    """Return for each body the place where a tool comes nearest to it. Bodies above which all tools stay are
+    left out.
+    """
     out = []
     for body in bodies:
         swept = find_swept_below(program, body.top)
@@ -87,12 +90,12 @@ def list_approaches(program: Program, bodies: Iterable[ViseBody], pose: Pose) ->
 
 
 def find_nearest_to_vise(program: Program, bodies: Iterable[ViseBody], pose: Pose) -> ToolNearVise | None:
-    """Return where a tool comes nearest to any of the bodies; None where no tool comes down to one."""
+    """Return the place where a tool comes nearest to any of the bodies; None if no tool comes down to one."""
     return min(list_approaches(program, bodies, pose), key=lambda one: one.distance, default=None)
 
 
 def find_tool_in_the_way(program: Program, bodies: Iterable[ViseBody], pose: Pose) -> ToolNearVise | None:
-    """Return where a tool comes too near the first of the bodies that is not clear; None where all are."""
+    """Return the place where a tool comes too near the first body that is not clear; None if all are clear."""
     return next(
         (
             one
@@ -114,10 +117,10 @@ def find_tools_below(program: Program) -> tuple[float, int, int] | None:
 
 
 def place_parallels(program: Program, jaws: JawPair, hold: JawHold, pose: Pose) -> JawHold | None:
-    """Return a hold with its parallels where the tools that come through the part are clear of them.
+    """Return a hold with its parallels moved clear of the tools that come through the part.
 
-    Each stands beside its jaw, or as little away from it as it needs, by whole millimetres where that is
-    clear, and within its half of the opening. None where no such place is clear.
+    Each stands beside its jaw or as little away from it as necessary, by whole millimetres if possible, and
+    within its half of the opening. None if there is no clear place.
     """
     swept = find_swept_below(program, 0.0)
     if not hold.parallels or not len(swept):
@@ -141,9 +144,9 @@ def place_parallels(program: Program, jaws: JawPair, hold: JawHold, pose: Pose) 
 def list_blocked_places(
     swept: SweptSpans, clearance: float, box: Box, pose: Pose
 ) -> list[tuple[float, float]]:
-    """Return open intervals of moves along y, in mm, by which a box would come too near what is swept.
+    """Return open intervals of moves along y, in mm, by which a box would come too near the swept space.
 
-    At the ends of the box, along x, a place may count as blocked that is just clear.
+    At the ends of the box, along x, a place that is only just clear may count as blocked.
     """
     low, high, reach = swept.bound_strip(pose, box.x0, box.x1, clearance)
     rows = np.column_stack([low - reach - box.y1, high + reach - box.y0])
@@ -181,8 +184,8 @@ def name_tool(program: Program, tool: int) -> str:
 
 
 def list_worst(near: Iterable[ToolNearVise]) -> list[ToolNearVise]:
-    """Return for each body's name the approach whose line is most often in the way, the commonest body
-    first.
+    """Return for each body's name the approach whose line most often comes too near it. The most frequent
+    body comes first.
     """
     by_body = dict[str, Counter[int]]()
     first = dict[tuple[str, int], ToolNearVise]()
@@ -195,14 +198,12 @@ def list_worst(near: Iterable[ToolNearVise]) -> list[ToolNearVise]:
 
 
 def add_article(body: str) -> str:
-    """Return the name of a body of the vise with its article; of jaws and parallels there are two."""
+    """Return the name of a body of the vise with its article, "a" if there are two of it, else "the"."""
     return f"a {body.split()[-1]}" if body.endswith(("jaw", "parallel")) else f"the {body}"
 
 
 def describe_tools_in_the_way(near: Iterable[ToolNearVise], program: Program) -> str:
-    """Return a clause that names each line and tool that is in the way, with the bodies that it comes too
-    near.
-    """
+    """Return a clause that names each line and tool that comes too near, with the bodies concerned."""
     together = dict[tuple[int, int, str], list[str]]()
     for one in list_worst(near):
         into, kept = "runs {tool} into {bodies}", ""
@@ -221,14 +222,14 @@ def describe_tools_in_the_way(near: Iterable[ToolNearVise], program: Program) ->
 
 
 def describe_left_out(near: Sequence[ToolNearVise], program: Program) -> str:
-    """Return a sentence on the set-ups that are left out because a tool comes too near the vise."""
+    """Return a sentence on the set-ups that are dropped because a tool comes too near the vise."""
     count = len(near)
     verb = "set-up is" if count == 1 else "set-ups are"
     return f"{count} {verb} left out: {describe_tools_in_the_way(near, program)}."
 
 
 def join_advice(near: Iterable[ToolNearVise], jaws: JawPair, program: Program) -> str:
-    """Return a sentence on what may help against each body that tools come too near, in the order of
+    """Return a sentence with a remedy for each body that tools come too near, in the order of
     :func:`list_worst`.
     """
     said = dict.fromkeys(advise_against(one.body, jaws, program) for one in list_worst(near))
@@ -237,7 +238,7 @@ def join_advice(near: Iterable[ToolNearVise], jaws: JawPair, program: Program) -
 
 
 def advise_against(body: str, jaws: JawPair, program: Program) -> str:
-    """Return a clause on what may help where tools come too near a body of the vise."""
+    """Return a clause with a remedy for tools that come too near a body of the vise."""
     match body:
         case "work stop" if len(jaws.stops) > 1:
             return "take the stop away"
@@ -258,16 +259,17 @@ def advise_against(body: str, jaws: JawPair, program: Program) -> str:
 
 
 def list_vise_sentences(fixture: Fixture, query: Query, unit: Unit) -> list[str]:
-    """Return sentences on how far tools come through a part between flat jaws, and what they come nearest
-    to; [] without a program.
+    """Return sentences on how far tools cut through a part between flat jaws, and on the bodies that they
+    come nearest to; [] without a program.
     """
     said = describe_tools_below(fixture, query, unit), describe_nearest(fixture, query, unit)
     return [sentence for sentence in said if sentence]
 
 
 def describe_nearest(fixture: Fixture, query: Query, unit: Unit) -> str:
-    """Return a sentence on where a tool comes nearest to the vise; "" without a program, and where none comes
-    down to it.
+    """Return a sentence on the place where a tool comes nearest to the vise.
+
+    It is "" without a program, and if no tool comes down to the vise.
     """
     if query.program is None:
         return ""
@@ -282,7 +284,8 @@ def describe_nearest(fixture: Fixture, query: Query, unit: Unit) -> str:
 
 
 def describe_tools_below(fixture: Fixture, query: Query, unit: Unit) -> str:
-    """Return a sentence on how far a tool comes through a part between flat jaws, and what it is clear of.
+    """Return a sentence on how far a tool comes through a part between flat jaws, and on the bodies that it
+    clears.
 
     It is "" without a program, and where no tool comes below the part.
     """

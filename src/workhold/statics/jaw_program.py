@@ -3,11 +3,11 @@
 A tool presses at a place of its path with a force in the plane, a force along its axis, and a torque either
 way round. The jaw force is convex in the load (``statics.friction``), and for one force the load is affine in
 the place. So for places in a box and directions in a range the worst loads are among finitely many: places at
-the corners of the box; forces at both ends of the range, and at the point where the tangents there meet,
-which is a little outside. Boxes and ranges are halved, the most promising first (branch and bound), until
-their corners need no more force than is already known for a single straight piece with a narrow range. Arcs
+the corners of the box; forces at both ends of the range, and at the point, a little outside, where the
+tangents at these ends meet. Boxes and ranges are halved, the most promising first (branch and bound). This
+ends when no corner needs more force than a single straight piece with a narrow range is known to need. Arcs
 are cut into short ones, each inside the triangle of its chord and tangents. So no force is understated, and
-none is overstated by 1 %.
+the overstatement is less than 1 %.
 
 Reference: A. H. Land, A. G. Doig, *An automatic method of solving discrete programming problems*,
 Econometrica 28 (1960).
@@ -56,8 +56,8 @@ class CuttingPieces:
     ----------
     move : (N,) index of the program's move.
     group : (N,) number of the tool and the kind of cut, ascending.
-    start, end : (N, 3) ends of the path of the force's point, x and y in the part's coordinates, z above its
-        lower side, in mm.
+    start, end : (N, 3) ends of the path of the force's point in mm: x and y in the part's coordinates, z
+        above its lower side.
     force : (N,) size of the force in the plane, in N.
     torque : (N,) size of the torque about z, in N mm; it may act either way round.
     axial : (N, 2) least and largest force along -z, in N.
@@ -168,7 +168,7 @@ def straighten_moves(start: Array, end: Array, bulge: Array) -> tuple[IntArray, 
 
 
 def describe_asked_force(need: ProgramJawForce, program: Program, unit: Unit) -> str:
-    """Return a sentence on the jaw force that a program needs, and where."""
+    """Return a sentence on the jaw force that a program needs, and the place."""
     asked = AskedForce(need.force or 0.0, need.line, need.tool, None, find_cut_of_move(program, need.move))
     if need.force is None:
         return f"No jaw force holds the part in {asked.describe_place(unit)}."
@@ -195,7 +195,7 @@ class GrippedPart(HeldByFriction, Protocol):
 
 @frozen(eq=False)
 class PressedPart:
-    """A program's pieces on a part as it lies between jaws, and the loads that they make.
+    """The pieces of a program on a part between jaws, and their loads.
 
     Parameters
     ----------
@@ -290,11 +290,11 @@ class PressedPart:
         return row * self.safety + self.still, at % len(pieces)
 
     def find_hard_load(self) -> tuple[float, int, Array]:
-        """Return (1) a lower bound in N of the jaw force needed, (2) the
-        index of the piece that needs it, (3) its load.
+        """Return (a lower bound in N of the jaw force needed, the index of the piece that needs it, its
+        load).
 
-        The force is inf where no jaw force holds. From each of twelve motions, the hardest load and the
-        motion that this load drives are found alternately.
+        The force is inf if no jaw force holds. The search starts from twelve motions. It alternates between
+        the hardest load on a motion and the motion that this load drives.
         """
         best, at, hardest = -inf, 0, np.zeros(6)
         for start in (*np.eye(6), *-np.eye(6)):
@@ -336,8 +336,8 @@ class PressedPart:
     def halve(self, chosen: IntArray, low: float, high: float) -> list[tuple[IntArray, float, float]]:
         """Return the pieces and the range of directions split in two, as (pieces, low, high) each.
 
-        Two cases, whichever is coarser: (a) the pieces are split by place; (b) the range is split in its
-        middle, and a half without pieces is left out.
+        If the places are coarser than the range, the pieces are split by place. Otherwise the range is split
+        in its middle, and a half without pieces is left out.
         """
         pieces = self.pieces
         wide = float(pieces.force[chosen].max()) > 0.0 and high - low > NARROW
@@ -368,10 +368,9 @@ def find_worst_move(
     safety: float,
     still: Array | None = None,
 ) -> ProgramJawForce | None:
-    """Return the largest jaw force that a program needs, and at which
-    move; None where no tool presses on the part.
+    """Return the largest jaw force that a program needs, with its move; None if no tool presses on the part.
 
-    In the returned object the force is None where no jaw force holds. Otherwise the force is never below the
+    In the returned object the force is None if no jaw force holds. Otherwise the force is never below the
     true one, and less than 1 % above it.
 
     Parameters

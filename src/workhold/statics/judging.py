@@ -3,9 +3,9 @@
 Glossary
 --------
 warning : a contact near an edge (one for each), a weak closure, a strong peg, a large location error, a peg
-    that lets go under a load. At a jaw force that is known also a peg that is bent too hard, and pegs that
+    that lets go under a load. With a known jaw force, also a peg with too much bending stress, and pegs that
     give way too far.
-unfit : a fixture is unfit for a workshop if the part's place is hardly determined or a peg hardly holds.
+unfit : a fixture is unfit for a workshop if it hardly determines the part's place or a peg hardly presses.
 penalty : points against a fixture. One point stands for a location error that is 12 % larger (ISO 3, series
     R20). A tilt, a strong peg and a small face cost a number of points each.
 """
@@ -74,8 +74,8 @@ class JudgingLimits:
     ----------
     off : sum of the tolerances of peg and face, in mm.
     small_face : size in mm below which a face is small.
-    jaw_force : force that the vise is closed with, in N; None where not given, and then there are no warnings
-        of pegs that let go or bend.
+    jaw_force : force in N that closes the vise; None if not given: then there are no warnings of pegs that
+        let go or bend.
     bending : largest bending stress of a pin in MPa, and largest movement of the part by pins in mm.
     """
 
@@ -143,12 +143,12 @@ def is_weak(margin: Any) -> Any:
 
 
 def is_strong(force: Any) -> Any:
-    """Return whether a peg carries much force; ``force`` per unit of jaw force is a number or an array."""
+    """Return whether a peg carries a large force; ``force`` per unit of jaw force is a number or an array."""
     return np.round(force, FIGURE_DECIMALS) > STRONG_PEG
 
 
 def is_astray(error: Any, off: float) -> Any:
-    """Return whether a location error is large; ``error`` in mm is a number or an array.
+    """Return whether a location error is too large; ``error`` in mm is a number or an array.
 
     ``off`` is the sum of the tolerances of peg and face in mm.
     """
@@ -156,8 +156,9 @@ def is_astray(error: Any, off: float) -> Any:
 
 
 def lets_go(needed: Any, jaw_force: float) -> Any:
-    """Return whether a peg lets go at a jaw force; ``needed``, the force
-    it needs, is a number or an array; all in N.
+    """Return whether a peg lets go at a jaw force in N.
+
+    ``needed`` is the jaw force in N below which the peg lets go, a number or an array.
     """
     return needed > jaw_force * (1.0 + NO_FORCE)
 

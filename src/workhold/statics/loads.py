@@ -1,18 +1,18 @@
-"""What loads do to one fixture: peg forces, the jaw force that is needed, and what friction could add.
+"""The effect of loads on one fixture: peg forces, the jaw force needed, and the possible help by friction.
 
-Contacts are without friction and bodies are rigid, so the peg forces are known exactly once the force on what
-moves is: f = f0 + F h. F is that force, of a vise the jaw force, h the peg forces per unit of it, and f0
-balances the load without pushing that carrier. A hydraulic or pneumatic jaw keeps its push, and the other
-contacts take a load as if it were not there. A screw vise is closed with a force F and then stands still. All
-contacts share a load according to their stiffness, as in a preloaded bolt (VDI 2230), and the push of the jaw
-changes with it.
+Contacts are without friction and bodies are rigid, so the force on the moving carrier determines the peg
+forces exactly: f = f0 + F h. F is that force (the jaw force of a vise), h the peg forces per unit of it, and
+f0 balances the load without pushing that carrier. The push of a hydraulic or pneumatic jaw stays constant,
+and the other contacts carry a load as if the jaw were absent. A screw vise is closed with a force F and is
+then locked. All contacts share a load according to their stiffness, as in a preloaded bolt (VDI 2230), and
+the push of the jaw changes with it.
 
 Let contacts be springs of the same stiffness and the jaw one of s times that, A be the contact matrix (see
-``kernels.contact.contact_matrix``), B = A^-T, and h its last column. A jaw that keeps its force answers a
-load g = (g_x, g_y, m / L, 0) with f0 = B g. All forces that balance the load are f0 + k h. A spring of the
-jaw takes up k / s, so the forces are those with the least energy sum f^2 + k^2 / s (Castigliano; S.
-Timoshenko and J. N. Goodier, *Theory of Elasticity*, 1970, section 92; for grasps A. Bicchi, Robotics and
-Autonomous Systems 13, 1994):
+``kernels.contact.contact_matrix``), B = A^-T, and h its last column. With a jaw that keeps its force, a load
+g = (g_x, g_y, m / L, 0) gives f0 = B g. All forces that balance the load are f0 + k h. A spring of the jaw
+takes up k / s, so the forces are those with the least energy sum f^2 + k^2 / s (Castigliano; S. Timoshenko
+and J. N. Goodier, *Theory of Elasticity*, 1970, section 92; for grasps A. Bicchi, Robotics and Autonomous
+Systems 13, 1994):
 
     f = f0 - h (h . f0) / (1 / s + h . h),
 
@@ -27,7 +27,8 @@ linear program
 
 with r the share of each edge in pushing the carrier that moves. Its dual (V. Chvatal, *Linear Programming*,
 1983, chapter 5) asks for the motion y of the part that does the most work -g . y among those with W^T y <= r.
-These form a polytope, because the wrenches span the space, and its few corners answer every load.
+These form a polytope, because the wrenches span the space, and for every load the maximum is at one of its
+few corners.
 """
 
 from __future__ import annotations
@@ -101,7 +102,7 @@ def read_jaw_stiffness(jaw: str | float) -> float:
 
 
 def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
-    """Return a phrase on what kind of jaw or clamp a stiffness stands for.
+    """Return a phrase that describes a jaw or clamp of a given stiffness.
 
     >>> from workhold import Plate, Vise
     >>> describe_jaw(0.0, Plate(pitch=20, peg_radius=5)), describe_jaw(5.0, Vise(pitch=10, columns=2, peg_radius=3))
@@ -114,7 +115,8 @@ def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
 
 
 def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
-    """Return the peg forces (..., P, 3) per unit of a load's g_x, g_y and moment, between jaws of this stiffness.
+    """Return the peg forces (..., P, 3) per unit of a load's g_x, g_y and moment, when jaws of this stiffness
+    share the load.
 
     Parameters
     ----------
@@ -130,8 +132,7 @@ def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Arra
 
 
 def compute_needed_jaw_forces(inverses: Array, closing: Array, length: float, loads: Array) -> Array:
-    """Return for each fixture the jaw force in N above which no peg of
-    a screw vise lets go under any load, (N,).
+    """Return for each fixture the jaw force (N,) in N of a screw vise at which no peg lets go under any load.
 
     At least 0. Peg i presses with f0_i - h_i (h . f0) / (h . h) + F h_i, where h_i > 0; the letters are those
     of the module's head. With two clamps F is the sum of their forces, at the working ratio, and the
@@ -253,7 +254,7 @@ class WorstLoad:
     ----------
     value : the worst force there, in N.
     peg : index of the peg concerned, in the fixture's order.
-    point : where the load acts, in mm in the part's coordinates; the part's centre for a moment alone.
+    point : point where the load acts, in mm in the part's coordinates; the part's centre for a moment alone.
     direction : direction of the load, in degrees in the part's frame, in [0, 360).
     """
 
@@ -265,7 +266,7 @@ class WorstLoad:
 
 @frozen
 class LoadCase:
-    """What one load does to a fixture; forces in N, for the worst point and direction of the load.
+    """The effect of one load on a fixture; forces in N, for the worst point and direction of the load.
 
     Parameters
     ----------
@@ -273,10 +274,10 @@ class LoadCase:
     jaw_stiffness : stiffness of the closed jaw, divided by that of one contact: inf for a screw, 0 for a jaw
         that keeps its force.
     jaw_force : force on the moving carrier before the load acts; ``smallest`` and ``largest`` hold for it.
-    smallest, largest : smallest and largest force of each peg, in the fixture's order. Where a force is
-        negative the peg would have to pull: it lets go, and the forces given are no longer those that act.
-    reaction : the largest peg force with as little clamping as keeps all forces from being negative (the
-        figure of quality ``compute_load_reaction``).
+    smallest, largest : smallest and largest force of each peg, in the fixture's order. A peg with a negative
+        force would have to pull: it lets go, and the given forces are then no longer the real ones.
+    reaction : the largest peg force at the least clamping for which no force is negative (the figure of
+        quality ``compute_load_reaction``).
     needed : the jaw force above which no peg lets go, and the peg that lets go below it; never negative.
     needed_with_friction : the jaw force above which Coulomb friction could hold the part; None where no
         friction was given. It is optimistic: with friction, statics does not determine the forces, and the
@@ -315,7 +316,7 @@ def compute_load_cases(
     loads : see :class:`workhold.model.requirements.Load`.
     jaw_force : force in N that pushes the moving carrier; by default the one needed so that no peg lets go
         under any load.
-    friction : Coulomb's coefficient of friction between peg and part, to say what it could add.
+    friction : Coulomb's coefficient of friction between peg and part, to compute its possible help.
     jaw : "screw", "constant", or how many times as stiff as one contact the jaw is; see ``statics.loads``.
 
     Raises
@@ -390,7 +391,7 @@ def find_largest_push(
     function of it largest, and the value there.
 
     The function is the scalar product of ``coefficients`` (3,) and (g_x, g_y, moment). The moment includes
-    that of the force about ``center``. ``peg`` is only copied into the result.
+    that of the force about ``center``. ``peg`` is merely copied into the result.
     """
     a, b, c = (float(value) for value in coefficients[:3])
     worst: WorstLoad | None = None
@@ -405,8 +406,7 @@ def find_largest_push(
 
 
 def find_needed_force(forces: Array, load: Load, center: tuple[float, float]) -> WorstLoad:
-    """Return the jaw force below which a peg lets go under a load,
-    and at which point and direction of the load.
+    """Return the jaw force below which a peg lets go under a load, with the point and direction of the load.
 
     The force is the largest -f0_i / h_i, at least 0. ``forces`` (P, 4) are peg forces per unit of g_x, g_y,
     moment and jaw force.
@@ -417,7 +417,8 @@ def find_needed_force(forces: Array, load: Load, center: tuple[float, float]) ->
 
 
 def find_largest_reaction(forces: Array, load: Load, center: tuple[float, float]) -> WorstLoad:
-    """Return the largest peg force under a load, with as little clamping as keeps all contacts, and where.
+    """Return the largest peg force under a load at the least clamping that keeps all contacts, with its point
+    and direction.
 
     ``forces`` (P, 4) are as in :func:`find_needed_force` (Brost & Goldberg 1996,
     ``kernels.contact.quality``).

@@ -49,7 +49,9 @@ class PatchCells:
 
 
 class PressedFace(ABC):
-    """A flat face with the pressures p = a + b u + c v >= 0 that it can bear, whatever its outline."""
+    """A flat face with the pressures p = a + b u + c v >= 0 that can act on it; the base of faces of all
+    outlines.
+    """
 
     @property
     @abstractmethod
@@ -83,7 +85,7 @@ class PressedFace(ABC):
 
 @frozen(eq=False)
 class PressedPatch(PressedFace):
-    """A patch of a jaw, with the pressures that it can bear; u runs along the jaw, v upward."""
+    """A patch of a jaw, with its possible pressures; u runs along the jaw, v upward."""
 
     patch: JawPatch
 
@@ -131,8 +133,7 @@ class PressedPatch(PressedFace):
 
 @frozen(eq=False)
 class PressedPolygon(PressedFace):
-    """A flat face of any outline, such as the lower side of a part on a
-    plate, with the pressures that it can bear.
+    """A flat face of any outline, such as the lower side of a part on a plate, with its possible pressures.
 
     Parameters
     ----------
@@ -172,7 +173,8 @@ class PressedPolygon(PressedFace):
 
 
 def compute_pressure_edges(corners: Sequence[Point], integral: Array) -> Array:
-    """Return the extreme ones, (R, 3), of the pressures a + b u + c v that are not negative on a convex hull.
+    """Return the extreme rays (R, 3) of the cone of pressures a + b u + c v that are not negative on a convex
+    hull.
 
     Rows are coefficients a, b, c, scaled to a total force of 1.
 

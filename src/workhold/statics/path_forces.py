@@ -1,13 +1,14 @@
-"""The place along a program at which the force of a tool is worst for a quantity that is linear in it.
+"""The place along a program where the force of a tool makes a linear function of the load largest.
 
 A contact's force is linear in the load, and so is the jaw force that keeps it: a g_x + b g_y + c m. A tool at
-p presses with F in a direction phi at its periphery. Its moment is that of F at p and a torque between -T
-and T. What is worst there is
+p presses with F in a direction phi at its periphery. Its moment is that of F at p and a torque between -T and
+T. The largest value there is
 
     V = F ((a - p_y c) cos phi + (b + p_x c) sin phi) + T |c|.
 
-*A straight move.* For one phi, V is linear in p, and so is greatest at an end. The directions are the same
-all along the move. So the greatest over phi is greatest at an end, too. Each end is a point with a range.
+*A straight move.* For a fixed phi, V is linear in p, so it is greatest at an end. The range of directions is
+the same all along the move. So the maximum over phi is greatest at an end, too. Each end becomes a point with
+a range of directions.
 
 *An arc*, p = m + r (cos alpha, sin alpha), run with the sense s = 1 (counter-clockwise) or -1. The direction
 is delta from against the feed: phi = alpha + s pi / 2 + pi + delta, |delta| <= h. Let A and phi0 be size and
@@ -15,11 +16,11 @@ angle of (a - m_y c, b + m_x c). The moment of r turns with phi, and
 
     V = F (A cos(phi - phi0) - s c r cos delta) + T |c|.
 
-On the rectangle of alpha and delta this is greatest at an end of alpha, which is a point as above. Or it is
-where its derivative in alpha vanishes, sin(phi - phi0) = 0. Of the two solutions cos = 1 is the greater.
-Left is -s c r cos delta, which is greatest at delta = 0 or at |delta| = h. So an arc has its two ends and at
-most three places within it. With any direction, h = pi, there are two: V is F |c| times the distance of p
-from the point where V is T |c|, greatest straight beyond the centre.
+On the rectangle of alpha and delta, the maximum is at an end of alpha, which is a point as above, or where
+the derivative in alpha vanishes, sin(phi - phi0) = 0. Of its two solutions, cos = 1 gives the greater value.
+The remaining term -s c r cos delta is greatest at delta = 0 or at |delta| = h. So an arc has two ends and at
+most three inner places to examine. If all directions are possible, h = pi, there are two: V - T |c| is F |c|
+times the distance of p from the point where V = T |c|, so it is greatest straight beyond the centre.
 
 *Blocks.* Pieces are evaluated in blocks. For a block with a circle around it, an upper bound of V is the
 value at the circle's centre with the block's largest F and T, plus F |c| times the circle's radius. Blocks
@@ -27,9 +28,9 @@ that cannot contain the largest value are skipped.
 
 *Hulls.* For one range of directions V = F v(p), with v convex in p, as T is F times the tool's radius. Take
 the convex hull of points of the path with at least as large a force and the same directions. A point inside
-or on it has a larger V than all of these only where V < 0, and there an idle tool, V = 0, is worse, which
-always counts. An arc lies inside if a polygon around it does. So hulls are built from the largest forces
-down, and pieces inside the hull of earlier ones are left out.
+or on it can exceed all of these only if V < 0, and then the idle tool, V = 0, which always counts, exceeds
+it. An arc lies inside if a polygon around it does. So hulls are built from the largest forces down, and
+pieces inside the hull of earlier ones are left out.
 
 References: G. B. Dantzig, *Linear Programming and Extensions*, 1963, for extremes at corners; A. H. Land and
 A. G. Doig, Econometrica 28 (1960), for the blocks.
@@ -66,7 +67,7 @@ COLUMNS = ("move", "force", "torque", "x", "y", "radius", "start", "sweep", "aga
 
 @frozen(eq=False)
 class WorstPlace:
-    """Where along a program each of N quantities is largest.
+    """The place along a program where each of N quantities is largest.
 
     Parameters
     ----------
@@ -122,8 +123,7 @@ class PathForces:
         return evolve(self, **{name: getattr(self, name)[chosen] for name in COLUMNS})
 
     def find_worst(self, functions: Array) -> WorstPlace:
-        """Return, for each row of linear functions of the load, the
-        largest value along the path, and where it is.
+        """Return the largest value along the path of each row of linear functions of the load, and its place.
 
         Parameters
         ----------
@@ -164,8 +164,9 @@ class PathForces:
         Parameters
         ----------
         row : (Q,) row of ``functions``.
-        place : (Q,) index of the function in its row, times ``blocks``, plus the index of the block.
-        blocks : how many blocks there are.
+        place : (Q,) index of the function in its row, times ``blocks``, plus the index of the block in which
+            to search.
+        blocks : number of blocks.
         first : row of ``found`` that row 0 of ``functions`` belongs to.
         """
         which, block = np.divmod(place, blocks)
@@ -316,7 +317,8 @@ FIRST, MOST_LEVELS = 256, 64
 
 @lru_cache(maxsize=8)
 def list_path_forces(program: Program, center: tuple[float, float]) -> PathForces:
-    """Return the pieces of a program at which forces can be worst; none without cutting forces; cached.
+    """Return the pieces of a program where forces can be worst; none without cutting forces. The result is
+    cached.
 
     Moments are taken about ``center`` in mm.
     """

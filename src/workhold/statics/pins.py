@@ -1,16 +1,16 @@
 """The deflection and stress of pegs, and the movement of the part by them (docs/quality.md, "Pins bend").
 
 Each peg is a cantilever, built in at the face of its plate, a round section of its diameter d. The part
-presses on it with F at the height a above the plate: at the middle of the run of heights on which the peg can
-press, or, at worst, at the top of that run. Then (S. P. Timoshenko, *Philosophical Magazine* 41, 1921, with
-the shear coefficient 9/10 of a circle)
+presses on it with F at the height a above the plate: at the middle of the range of heights at which the peg
+can press or, in the worst case, at the top of that range. Then (S. P. Timoshenko, *Philosophical Magazine*
+41, 1921, with the shear coefficient 9/10 of a circle)
 
     deflection = F a³ / (3 E I) + 10 F a / (9 G A),   stress = 32 F a / (π d³),   I = π d⁴ / 64,   A = π d² / 4 .
 
 Tips of clamps and walls count as rigid: a clamp follows its locators, and its stroke takes up its own
 deflection. Pegs deflect along their normals, away from the part. The movement of the part follows from the
-inverse of the contact matrix, as for the location error; but here all pegs deflect at once, by known amounts,
-instead of by unknown errors.
+inverse of the contact matrix, as for the location error. But here all pegs deflect at once and by known
+amounts, instead of by unknown errors.
 
 By hand: Ø 6 mm, 38 mm high, 500 N: 0.694 mm, of which 0.685 mm is bending, and 896 MPa.
 """
@@ -52,7 +52,7 @@ AT_ONCE = 1 << 20
 
 
 def compute_deflections(force: Any, height: Any, diameter: Any) -> Any:
-    """Return the deflections in mm of round steel cantilevers where they are pressed, numbers or arrays.
+    """Return the deflections in mm of round steel cantilevers at the point of the force; numbers or arrays.
 
     Parameters
     ----------
@@ -102,7 +102,7 @@ class PinRuns:
     Parameters
     ----------
     low, high : (N, P) lowest and highest height for each of P contacts; NaN for contacts that are not pegs in
-        holes of a plate, and where not known.
+        holes of a plate, and if not known.
     diameter : (N, P) diameter of the peg; NaN for contacts that are not pegs.
     """
 
@@ -172,8 +172,8 @@ def find_runs_on_solid(faces: NDArray[Any], points: Array, workpiece: Workpiece)
 def find_runs(segments: tuple[int, ...], points: Array, workpiece: Workpiece) -> tuple[Array, Array]:
     """Return (1) the lowest and (2) the highest heights in mm of one face at points (N, 2) of it, (N,) each.
 
-    ``segments`` are the numbers of the face's segments. Where the range of heights varies along a segment,
-    that at the point is taken.
+    ``segments`` are the numbers of the face's segments. If the range of heights varies along a segment, the
+    range at the point is taken.
     """
     numbered = workpiece.numbered
     parameters = np.array([compute_parameters(numbered.segments[k], points) for k in segments])
@@ -202,7 +202,7 @@ def compute_parameters(segment: Segment, points: Array) -> Array:
 
 @frozen(eq=False)
 class BentPins:
-    """How far the pegs of N fixtures bend with forces at given heights.
+    """Bending of the pegs of N fixtures under forces at given heights.
 
     Parameters
     ----------
@@ -246,8 +246,8 @@ def compute_bent_pins(
 
 
 def find_farthest_movements(moves: Array, corners: Array, arcs: Array) -> Array:
-    """Return the largest movement in mm of a point of the
-    silhouette, (N,), for N small movements of the part.
+    """Return for each of N small movements of the part the largest movement in mm of a point of its
+    silhouette, (N,).
 
     ``moves`` (N, 3) are the shift (v_x, v_y) in mm and the turn t in radians. A point q, relative to the
     centre, moves by v + t (-q_y, q_x). It is farthest at a corner, or inside a convex arc about m where the

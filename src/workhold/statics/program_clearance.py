@@ -1,8 +1,8 @@
-"""How near the tools of a program come to what holds the part: to pegs, clamps with their bodies, and walls.
+"""The clearance between the tools of a program and the fixture: pegs, clamps with their bodies, and walls.
 
-An element of a fixture is a disc, a capsule or a half plane up to the height of the pegs, or between heights
-of its own. Its clearance is the least distance of the axis of a tool's cylinder to it, less the cylinder's
-radius, over all that the program sweeps at these heights.
+An element of a fixture is a disc, a capsule or a half plane, from the plate up to the height of the pegs or
+between heights of its own. Its clearance is the least distance from the axis of a tool's cylinder to it,
+minus the cylinder's radius, over the whole program at these heights.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ IntArray = NDArray[np.int64]
 
 @frozen(eq=False)
 class NearestMove:
-    """Where the tools of a program come nearest to each of N fixtures.
+    """The place where the tools of a program come nearest to each of N fixtures.
 
     Parameters
     ----------
-    clearance : (N,) in mm, negative for a collision; inf where nothing is swept at these heights.
+    clearance : (N,) in mm, negative for a collision; inf if nothing is swept at these heights.
     line, tool : (N,) line of the program, and tool number; -1 where the clearance is inf.
     contact : (N,) index of the nearest contact: a peg, a clamp, or an end on a wall.
     span : (N,) index of the swept span; -1 where there is none.
@@ -59,11 +59,11 @@ class NearestMove:
 def find_nearest_moves(
     table: FixtureTable, workpiece: Workpiece, toolkit: Toolkit, program: Program, peg_height: float
 ) -> NearestMove:
-    """Return where the tools of a program come nearest to what holds the part, for each fixture of a table.
+    """Return for each fixture of a table the place where the tools of a program come nearest to it.
 
     Parameters
     ----------
-    peg_height : height in mm up to which pegs reach; what tools sweep above it does not count.
+    peg_height : height of the pegs in mm; the space that tools sweep above it does not count.
     """
     count = len(table)
     line, tool, contact, span = (np.full(count, -1) for _ in range(4))
@@ -99,11 +99,11 @@ def find_nearest_moves(
 
 @frozen
 class ToolClearance:
-    """Where the tools of a program come nearest to one fixture.
+    """The place where the tools of a program come nearest to one fixture.
 
     Parameters
     ----------
-    distance : to the nearest element that holds the part, in mm.
+    distance : distance to the nearest element of the fixture, in mm.
     line, tool : line of the program, and tool number.
     element : name of the nearest element, such as "peg L-A1".
     contact : index of the element among the contacts.
@@ -138,9 +138,9 @@ def rename_element(element: str, before: Sequence[str], after: Sequence[str]) ->
 
 
 def find_nearest_passing(result: Result, index: int) -> ToolClearance | None:
-    """Return where the tools of a result's program come nearest to fixture ``index``.
+    """Return the place where the tools of a result's program come nearest to fixture ``index``.
 
-    None without a program, and where no tool comes down to the height of the pegs.
+    None without a program, and if no tool comes down to the height of the pegs.
     """
     if result.query.program_to_clear is None:
         return None
@@ -168,8 +168,8 @@ def find_nearest_passing(result: Result, index: int) -> ToolClearance | None:
 
 
 def name_element(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) -> str:
-    """Return the name of the element behind contact ``contact`` of
-    table row ``row``, such as "peg L-A1" or "fence".
+    """Return the name of the element of contact ``contact`` in table row ``row``, such as "peg L-A1" or
+    "fence".
     """
     arrangement = toolkit.arrangements[int(table.arrangement[row])]
     carrier = toolkit.carriers[arrangement.carriers[contact]]
@@ -180,8 +180,7 @@ def name_element(table: FixtureTable, toolkit: Toolkit, row: int, contact: int) 
 
 
 def find_reach_to_wall(table: FixtureTable, rows: IntArray, swept: SweptSpans) -> tuple[Array, IntArray]:
-    """Return (1) the distance in mm of the swept tools from the wall, and
-    (2) the index of the nearest span, (R,) each.
+    """Return (the distance in mm of the swept tools from the wall, the index of the nearest span), (R,) each.
 
     Distances are those of the tools' cylinders; ``rows`` (R,) are rows of the table.
     """
@@ -206,7 +205,7 @@ def keep_smaller_clearances(
     """Write clearances (R,) of contact ``contact`` into the rows of
     ``found`` where they are smaller than the ones there.
 
-    ``span`` (R,) are the indices of the nearest spans. ``below`` says whether ``swept`` is what is swept
+    ``span`` (R,) are the indices of the nearest spans. ``below`` tells whether ``swept`` is the space swept
     below the part.
     """
     less = (clearance < found.clearance[rows]) & (span >= 0)

@@ -44,8 +44,8 @@ class CutStretch:
     Parameters
     ----------
     kind : kind of cut, one of ``model.cutting_forces.CUT_KINDS``.
-    start, end : positions of the tool's tip where it begins and where it stops cutting, from the program's
-        own zero.
+    start, end : positions of the tool's tip at the beginning and the end of the cut, from the program's own
+        zero.
     length : length over which the move cuts, all stretches together.
     whole : length of the move.
     name : name of the tool; empty without one.
@@ -59,7 +59,7 @@ class CutStretch:
     name: str = ""
 
     def describe(self, unit: Unit) -> str:
-        """Return a phrase on what cuts and where, to follow the tool's number.
+        """Return a phrase that describes the cut and its place, to follow the tool's number.
 
         Examples
         --------
@@ -102,7 +102,7 @@ def format_length(value: float, unit: Unit) -> str:
 
 @frozen
 class AskedForce:
-    """A force that a program requires.
+    """A force that a program requires, and where.
 
     Parameters
     ----------
@@ -135,9 +135,9 @@ class CuttingNeed:
 
     Parameters
     ----------
-    jaw : the jaw force above which no contact lets go along the whole path, and the contact that lets go
+    jaw : the jaw force at which no contact lets go along the whole path, and the contact that lets go first
         below it.
-    contact : the largest force of a contact at ``jaw_force``, and which contact.
+    contact : the largest force of a contact at ``jaw_force``, and that contact.
     jaw_force : the given jaw force in N or, where none is given, the required one.
     room : given minus required jaw force, in N; None where none is given.
     """
@@ -166,7 +166,7 @@ class CuttingNeed:
 
         Parameters
         ----------
-        mover : what presses, such as "jaw".
+        mover : name of the carrier that presses, such as "jaw".
         unit : unit of the forces.
         movers : number of jaws or clamps that press; the force of two is that of both together.
 
@@ -254,7 +254,9 @@ def get_center(touched: TouchableFeatures) -> tuple[float, float]:
 
 
 def make_scale(touched: TouchableFeatures) -> Array:
-    """Return (1, 1, L): columns of inverse contact matrices are divided by it to take moments in N mm."""
+    """Return (1, 1, L): dividing the columns of inverse contact matrices by it makes them apply to moments in
+    N mm.
+    """
     return np.array([1.0, 1.0, touched.length])
 
 
@@ -283,12 +285,13 @@ def find_cutting_needs(
     jaw_force: float | None,
     jaw: str | float = "screw",
 ) -> list[CuttingNeed | None]:
-    """Return what the tools of a program require of each fixture of a table; None where forces are not known.
+    """Return the forces that the tools of a program require of each fixture of a table; None if forces are
+    not known.
 
     Parameters
     ----------
     jaw_force : force in N with which the vise is closed; None to take the required one.
-    jaw : what closes the vise, see :func:`workhold.statics.loads.read_jaw_stiffness`.
+    jaw : kind or stiffness of the jaw, see :func:`workhold.statics.loads.read_jaw_stiffness`.
     """
     touched, carriers = (
         TouchableFeatures.from_workpiece(workpiece, toolkit),
@@ -369,14 +372,14 @@ def find_cut_of_move(program: Program, move: int) -> CutStretch | None:
 def find_cutting_need(
     result: Result, index: int, jaw_force: float | None = None, jaw: str | float = "screw"
 ) -> CuttingNeed | None:
-    """Return what the tools of a result's program require of fixture ``index``.
+    """Return the forces that the tools of a result's program require of fixture ``index``.
 
     None without cutting forces, and for toolkits that hold by friction.
 
     Parameters
     ----------
     jaw_force : in N; None for that of the result's query.
-    jaw : what closes the vise, see :func:`workhold.statics.loads.read_jaw_stiffness`.
+    jaw : kind or stiffness of the jaw, see :func:`workhold.statics.loads.read_jaw_stiffness`.
     """
     program = result.query.program
     if program is None or program.forces is None or result.toolkit.holds_by_friction:

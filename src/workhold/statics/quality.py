@@ -2,9 +2,10 @@
 
 Glossary
 --------
-main direction : in degrees in [0, 90): the direction with the most length of straight faces, where
-    directions a quarter turn apart count as one. The longest face gives it, or the first of equally long
-    ones. Where no face is straight, or another direction has about as much, the drawing's own x.
+main direction : the direction, in degrees in [0, 90), with the greatest total length of straight faces;
+    directions a quarter turn apart count as one. Its exact value is that of the longest of these faces, or
+    the first of equally long ones. It is the drawing's own x if no face is straight or another direction has
+    about the same length.
 tilt : angle between the main direction and the nearest of the directions of the jaws, x and y.
 """
 
@@ -68,8 +69,8 @@ Array = NDArray[np.float64]
 
 
 def find_main_direction(workpiece: Workpiece) -> float:
-    """Return the main direction of a part in degrees in [0, 90), in the
-    frame of its drawing; 0.0 where it has none.
+    """Return the main direction of a part in degrees in [0, 90), in the frame of its drawing; 0.0 if it has
+    none.
     """
     lines = [face.segment for face in workpiece.faces if isinstance(face.segment, Line)]
     if not lines:
@@ -130,7 +131,7 @@ def measure_quality(
 
     Parameters
     ----------
-    tolerance : how far pegs and faces may be off, for the location error; None for 0.01 mm each.
+    tolerance : tolerances of pegs and faces, for the location error; None for 0.01 mm each.
     loads : loads, each of which acts by itself, for the load reaction; the worst load counts.
     threads : how many threads share the work; the outcome does not depend on it.
     touched : the workpiece's contact features; None to compute them.
@@ -142,8 +143,8 @@ def measure_quality(
 
     Returns
     -------
-    (N, F) array, columns as ``model.quality.list_figures_in_columns`` has them; NaN for figures of loads
-    without loads, and for pegs whose contact equations have no single solution.
+    (N, F) array with the columns of ``model.quality.list_figures_in_columns``; NaN for figures of loads
+    without loads, and for pegs whose contact equations have no unique solution.
     """
     tolerance = tolerance or Tolerance()
     known = touched or TouchableFeatures.from_workpiece(workpiece, toolkit)
@@ -231,7 +232,7 @@ def measure_most_bent(
     """Return for each fixture the largest deflection and stress of a
     peg, and the movement of the part, (N, 3).
 
-    In mm, MPa and mm; NaN where not known.
+    In mm, MPa and mm; NaN if not known.
     """
     bent = compute_bent_pins(contacts, runs.diameter, runs.middle, jaw_force, length, silhouette)
     is_peg = ~np.isnan(runs.diameter)
@@ -260,9 +261,10 @@ def compute_closures(reactions: Array) -> Array:
 
 
 def number_shared_faces(block: FixtureTable, toolkit: Toolkit, workpiece: Workpiece) -> NDArray[np.int64]:
-    """Return a number for each contact, (N, P), equal for contacts that an error of one face moves together.
+    """Return a number for each contact, (N, P); contacts with equal numbers move together by an error of
+    their common face.
 
-    The numbers are face numbers; a corner on a wall has a number of its own.
+    The numbers are face numbers; each corner on a wall has a unique number.
     """
     faces = block.face.astype(np.int64)
     for ends in toolkit.ends_on_walls:
@@ -286,7 +288,7 @@ def measure_fixture(
 ) -> Fixture:
     """Return fixture ``index`` of a result with all figures of quality.
 
-    Where given, ``loads`` and ``jaw_force`` in N replace those of the result's query.
+    ``loads`` and ``jaw_force`` in N, if given, replace those of the result's query.
     """
     row = result.table.take(slice(index, index + 1))
     asked = result.query.loads if loads is None else loads
@@ -307,7 +309,7 @@ def measure_fixture(
 def find_silhouette_extremes(workpiece: Workpiece) -> tuple[Array, Array]:
     """Return corners and arcs of the part's silhouette.
 
-    One of them has the point that a small movement of the part moves most.
+    A small movement of the part moves some point of these farther than all other points.
 
     Returns
     -------

@@ -1,9 +1,9 @@
 """The strap force that loads require, for a part that locators place and straps press down.
 
-Each strap's tip presses with the same force F, and bears friction at a point, at most the coefficient times
-F. Below, the part lies (a) on supports, which are points that press upward with friction, or (b) with its
-foot on the plate, which presses with a pressure that is affine over the foot, with friction in each of its
-cells. Locators push inward without friction, at any height of their bands, and each may let go. How F is
+Each strap's tip presses with the same force F; its friction acts at a point and is at most the coefficient
+times F. Below, the part lies (a) on supports, which are points that press upward with friction, or (b) with
+its foot on the plate, which presses with a pressure that is affine over the foot, with friction in each of
+its cells. Locators push inward without friction, at any height of their bands, and each may let go. How F is
 computed, and why it is safe, is in :mod:`workhold.statics.friction`.
 """
 
@@ -36,7 +36,7 @@ class StrappedPart:
     inward : (L, 2) unit vectors along which the locators push.
     bands : (L, 2) lowest and highest height in mm at which each locator may push.
     below : the part's foot, or the points (S, 2) in mm of the S supports under it.
-    friction : coefficient of friction between the part and what is below it.
+    friction : coefficient of friction between the part and its rest below.
     """
 
     touched: Array
@@ -106,8 +106,8 @@ class StrappedPart:
 
     @cached_property
     def bearing_below(self) -> Array:
-        """Friction (C, R) that each of the C cells or supports below
-        bears, per unit of each of the R pressures.
+        """Largest friction force (C, R) of each of the C cells or supports below, per unit of each of the R
+        pressures.
         """
         if not isinstance(self.below, PressedPolygon):
             return self.friction * np.eye(len(self.below))
@@ -117,7 +117,7 @@ class StrappedPart:
 
 @frozen(eq=False)
 class PressingTips:
-    """The N places at which tips may press on a part, and what a tip does to the part there.
+    """The N places at which tips may press on a part, and the forces of a tip there.
 
     Parameters
     ----------
@@ -143,12 +143,16 @@ class PressingTips:
         return self.part.compute_friction_wrenches(self.at, self.heights)
 
     def press(self, chosen: Sequence[int], part: StrappedPart | None = None) -> StrapsOnPart:
-        """Return ``part``, or this object's own part if that is None, with straps at the places of these indices."""
+        """Return a part with straps at the places of these indices; ``part`` None stands for this object's
+        own part.
+        """
         numbers = list(chosen)
         return StrapsOnPart(part or self.part, self.down[numbers], self.friction[numbers], self.coefficient)
 
     def compute_work(self, motion: Array) -> Array:
-        """Return the work (N,) that a tip at each place does on a motion (6,), with its friction, per N of force."""
+        """Return the work (N,) that a tip at each place does on a motion (6,), friction included, per N of
+        force.
+        """
         rubbed = (self.friction @ motion).max(axis=1, initial=0.0)
         return np.asarray(self.down @ motion + self.coefficient * rubbed)
 
@@ -207,8 +211,8 @@ class StrapsOnPart:
 
     @cached_property
     def bearing(self) -> Array:
-        """Friction (C + K, R + 1) that each cell below and each tip
-        bears, per unit of each row of ``pressing``.
+        """Largest friction force (C + K, R + 1) of each cell below and each tip, per unit of each row of
+        ``pressing``.
         """
         below = self.part.bearing_below
         out = np.zeros((len(below) + len(self.down), below.shape[1] + 1))
@@ -217,7 +221,5 @@ class StrapsOnPart:
 
     @cached_property
     def clamp_force_per_pressure(self) -> Array:
-        """Force of each strap, (R + 1,), that a unit of each row of
-        ``pressing`` counts as: 1 for the tips, else 0.
-        """
+        """Force of each strap, (R + 1,), per unit of each row of ``pressing``: 1 for the tips, else 0."""
         return np.asarray(np.eye(1, len(self.pressing), len(self.pressing) - 1)[0])

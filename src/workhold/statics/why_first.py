@@ -1,4 +1,6 @@
-"""A line on why a fixture is the first choice: the keys of the usual ranking that count before any figure."""
+"""A line that explains why a fixture is the first choice, by the keys that the usual ranking compares before
+any figure.
+"""
 
 from __future__ import annotations
 
@@ -78,7 +80,8 @@ def describe_least_bent(result: Result) -> str:
 
 
 def describe_first_position(result: Result, angle: int) -> str:
-    """Return a phrase on the first fixture's angle, and why no fixture of a better angle class is first.
+    """Return a phrase on the first fixture's angle, and the reason why no fixture of a better angle class is
+    first.
 
     ``angle`` is the class of the first fixture's angle, see :mod:`workhold.statics.effective_error`.
     """
