@@ -1,14 +1,14 @@
 """Candidate peg pairs and quartets of jaw-specified features with their pegs (paper, sections 3 to 3.5.1).
 
-A candidate is four features, the pegs that touch them, and the sectors of orientations at which they might.
-Everything here only bounds; what a bound cannot exclude is handed on.
+A candidate is four features, the pegs that touch them, and the sectors of orientations at which they may do
+so. This module only computes bounds; candidates that no bound excludes are passed on.
 
 Glossary
 --------
 orientation : psi in radians, by which the pegs turn in the workpiece's frame. Section 4 maps the points onto
     the features and inverts the map; the workpiece's own orientation is -psi.
-sector : one of 360 equal parts of the circle of orientations. Sets of orientations are sets of sectors,
-    always too large rather than too small.
+sector : one of 360 equal parts of the circle of orientations. Sets of orientations are represented by sets of
+    sectors that contain them.
 piece : a short stretch of a feature inside a disc. The vectors between points of two pieces lie in a disc,
     hence in an annulus wedge: a range of distances and a range of directions (section 3.3). Wedges between
     pieces bound the vectors between two features far more closely than one wedge for the whole features
@@ -162,7 +162,7 @@ def find_wedge_sectors(
     of the first feature, (P, SECTORS) of bool.
 
     See sections 3.3 and 3.4. The step from the first peg to the second has a length (``distance``) in mm and
-    a direction in radians. Return None where no annulus wedge between two pieces holds a vector of this
+    a direction in radians. Return None if no annulus wedge between two pieces contains a vector of this
     length.
     """
     between = two.middle[None, :] - one.middle[:, None]
@@ -254,7 +254,7 @@ class EquationSystems(ArrayTable):
     ----------
     feature, column, row : (N, 4) or (N, 3); rows are counted from the first peg, columns from the first peg
         of the same jaw. The left pegs come first.
-    sectors : (N, SECTORS) whether an orientation is not excluded.
+    sectors : (N, SECTORS) whether orientations in the sector are still possible.
     """
 
     feature: IntArray
@@ -272,8 +272,8 @@ class FacingDirections:
 
     Parameters
     ----------
-    left, right : (F, SECTORS) whether a left peg, or a right peg, can push the feature so as to clamp at an
-        orientation. These are the two parts of the valid orientations (section 3.2).
+    left, right : (F, SECTORS) whether a left peg, or a right peg, can push on the feature in a clamping
+        direction at an orientation. These are the two parts of the valid orientations (section 3.2).
     resists : (F, SECTORS) whether a feature has a normal within a quarter turn of a direction. Four features
         can close only if every direction is resisted by one of them (section 3).
     """
@@ -301,8 +301,8 @@ def are_parallel(rows: Array, a: IntArray, b: IntArray) -> BoolArray:
 
 
 def rank_peg_pairs(pairs: PegPairs, rows: Array) -> IntArray:
-    """Return a rank (N,) of each peg pair, higher with more arcs; exchanging a pair's features does not
-    change its rank.
+    """Return a rank (N,) of each peg pair, higher for more arcs; exchanging a pair's features does not change
+    the rank.
 
     Half a turn of the toolkit exchanges the jaws and each pair's features. So it is enough to examine
     quartets whose left pair ranks at least as high as the right one.

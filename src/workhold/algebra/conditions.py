@@ -1,8 +1,8 @@
 """The test of simultaneous contacts: ends of features, gap rule, force closure, clamping (section 3).
 
-The conditions are those of the model, widened by how far a contact may be off, so nothing is excluded that
-the later proofs would not exclude. Contacts that pass are written as records, in the layout of the compiled
-kernels. The proofs, which both engines share, decide them.
+The conditions are those of the model, widened by the contacts' error bounds, so that only contacts are
+excluded that the later proofs would exclude too. Contacts that pass are written as records, in the layout of
+the compiled kernels. The proofs, which both engines share, decide them.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class SimultaneousContacts(ArrayTable):
 
     Parameters
     ----------
-    standing : how many pegs, the first ones, are on the jaw that stands still.
+    standing : number of pegs on the fixed jaw; these are the first ones.
     feature, column, row : (N, 4), or (N, 3) before the fourth peg is found, see ``EquationSystems``.
     psi : (N,) orientation of the pegs in radians.
     reach : (N,) error bound of psi in radians, and of the centres as a fraction of the part's size.
@@ -67,8 +67,8 @@ def are_within_ends(rows: Array, center: Complex, margin: float, radius: Array) 
     """Return whether contacts may be inside their features, ``margin`` mm from the ends (model: condition 1).
 
     This is not ``contact.features.measure_end_distances``: the algebra is a second opinion and evaluates the
-    rules on its own. The last two columns of ``rows`` (..., 12) are how far in mm a contact may lie past the
-    low and the high end. Peg centres ``center`` (...) may be off by ``radius`` mm.
+    rules on its own. The last two columns of ``rows`` (..., 12) are the tolerances in mm past the low and the
+    high end. Peg centres ``center`` (...) have the error bound ``radius`` in mm.
     """
     off = (center - rows[..., X] - 1j * rows[..., Y]) * (rows[..., AXIS_X] - 1j * rows[..., AXIS_Y])
     straight = rows[..., IS_ARC] == 0.0

@@ -1,9 +1,9 @@
 """The paper's own algorithm: generate candidate quartets and pegs, solve their polynomials, test (section 3).
 
-It serves what the paper is about: two carriers alike, of which a half turn makes the other, with two pegs on
-each or with three and one. Its left and right pegs, Types I and II are those of the frame of the search.
+It treats the toolkits of the paper: two equal carriers that a half turn exchanges, with two pegs on each or
+with three and one. Left and right pegs, Types I and II refer to the frame of the search.
 
-A system is undecided when its resultant vanishes at every orientation although no known reason applies
+A system is undecided when its resultant vanishes at every orientation for no known reason
 (``sliding_pairs``), or when its roots cannot be separated at 1,024 bits. Only fixtures with these pegs on
 these faces may then be missing, and a note names them.
 """
@@ -84,12 +84,12 @@ GENERATORS: dict[
 
 @define(eq=False)
 class ResultantSolver:
-    """A solver of the systems of one workpiece in one toolkit; it counts its work.
+    """A solver for the systems of one workpiece in one toolkit, with counts of its work.
 
     Parameters
     ----------
     rows : (F, 12) features about the centre of the part, with the slack of their ends.
-    frame : the toolkit as the search sees it.
+    frame : the toolkit in the frame of the search.
     margin : smallest distance in mm from a contact to the end of its feature.
     diameter : largest distance in mm between two peg centres: equations are solved with it as the unit of
         length.
@@ -238,7 +238,7 @@ def batch_by_case(stream: Iterable[EquationSystems], rows: Array) -> Iterator[tu
 
 
 def refuse_unlike(frame: SearchFrame) -> None:
-    """Raise InputError for a toolkit that the paper does not treat, whose carriers are not alike."""
+    """Raise InputError for a toolkit with unequal carriers, which the paper does not treat."""
     one, other = ((c.columns, c.rows, c.peg_radius, c.body_radius, c.flat, c.heights) for c in frame.carriers)
     if one != other or not (
         frame.swapped_peg_count or all(each.pegs == (3, 1) for each in frame.toolkit.arrangements)
@@ -274,12 +274,12 @@ def find_fixtures_by_algebra(
     cancel: Event | None = None,
     is_part: bool = False,
 ) -> Result:
-    """Find every fixture that a query asks for as the paper does, by resultants.
+    """Find every fixture that a query asks for by the paper's method, with resultants.
 
     Parameters
     ----------
-    query : the query; its seating is ignored, see ``search.seated``. All fixtures are found even where only
-        the best are wanted.
+    query : the query; its seating is ignored, see ``search.seated``. All fixtures are found even if the query
+        asks only for the best.
     progress : called as ``progress(fraction done, fixtures found so far)``; the fraction is a guess.
     cancel : when set, the search stops soon and the result, marked incomplete, holds what was found.
     is_part : whether the result is to be joined with others before fixtures are ranked.

@@ -1,9 +1,9 @@
 """Resultants as polynomials over complex balls, for systems whose roots double precision cannot separate.
 
 Nearly sliding pairs (equal arcs almost as far apart as their pegs) crowd up to eight roots together. The
-formulas are those of ``algebra.resultants``, on Laurent polynomials in z whose coefficients are
-balls of python-flint. Doubles are exact rationals, so the resultant belongs to the very same system at any
-precision, and its roots are isolated.
+formulas are those of ``algebra.resultants``, on Laurent polynomials in z whose coefficients are balls of
+python-flint. Doubles are exact rationals, so at any precision the resultant is that of exactly the same
+system, and its roots are isolated.
 """
 
 from __future__ import annotations
@@ -129,7 +129,7 @@ class ExactSystem:
         return e, make_binomial(self.point[k].conjugate(), -1, between.conjugate(), 0)
 
     def form_offset_difference(self, k: int, m: int) -> tuple[LaurentPolynomial, LaurentPolynomial]:
-        """Return E of peg m minus E of peg k, and its conjugate; both divided by z - z0 where the two arcs
+        """Return E of peg m minus E of peg k, and its conjugate; both divided by z - z0 if the two arcs
         slide.
 
         Symbols are those of ``algebra.resultants``.
@@ -170,10 +170,10 @@ class ExactSystem:
         return (radius * inverse, inverse * e + z * e_bar, radius * z), (radius * e_bar, square, radius * e)
 
     def form_pair_equation(self, k: int) -> LaurentTriple:
-        """Return the constraint h or g of peg k, which is on the first
-        peg's jaw; divided by z - z0 where the arcs slide.
+        """Return the contact constraint of peg k, which is on the first peg's jaw: h for a line, g for an
+        arc.
 
-        Symbols are those of ``algebra.resultants``.
+        It is divided by z - z0 if the arcs slide. Symbols are those of ``algebra.resultants``.
         """
         if self.straight[k]:
             return self.form_line_equation(k)[1]
@@ -186,7 +186,7 @@ class ExactSystem:
     def form_circle_difference(self, k: int, m: int) -> tuple[LaurentPolynomial, LaurentTriple]:
         """Return g_sigma of peg m minus g_sigma of peg k, as (factor of the separation, other terms).
 
-        Both are divided by z - z0 where the arcs slide. Symbols are those of ``algebra.resultants``.
+        Both are divided by z - z0 if the arcs slide. Symbols are those of ``algebra.resultants``.
         """
         e, e_bar = self.form_offset_difference(k, m)
         (one, one_bar), (two, two_bar) = self.form_offset(k), self.form_offset(m)

@@ -104,8 +104,9 @@ def isolate_roots_in_balls(values: Complex) -> Complex:
 
 
 def find_companion_roots(values: Complex) -> Complex:
-    """Return the roots (N, 2 d) of N polynomials with coefficients (N, 2 d + 1), of which the first and the
-    last must not be small."""
+    """Return the roots (N, 2 d) of N polynomials with coefficients (N, 2 d + 1), whose first and last
+    coefficients must not be small.
+    """
     degree = values.shape[1] - 1
     matrix = np.zeros((len(values), degree, degree), np.complex128)
     matrix[:, np.arange(1, degree), np.arange(degree - 1)] = 1.0
@@ -114,11 +115,9 @@ def find_companion_roots(values: Complex) -> Complex:
 
 
 def count_vanishing_ends(values: Complex, largest: Array) -> IntArray:
-    """Return, for each polynomial (N, 2 d + 1), how many coefficients to cut off at either end because they
-    vanish.
+    """Return for each polynomial (N, 2 d + 1) the number of negligible coefficients to cut off at either end.
 
-    The number counts coefficients that are negligible at both ends alike. ``largest`` (N,) is the size of the
-    largest coefficient.
+    The number is the same for both ends. ``largest`` (N,) is the size of the largest coefficient.
     """
     bound = values.shape[1] // 2
     size = np.maximum(np.abs(values), np.abs(values[:, ::-1]))[:, :bound]
@@ -277,8 +276,9 @@ def linearize_contacts(contacts: ContactSystems, poses: Poses) -> tuple[Array, A
 
 
 def find_unit_circle_roots(ring: TrigPolynomial) -> tuple[Complex, Complex]:
-    """Return two points w of the unit circle, for each polynomial, where it vanishes or, if nowhere, comes
-    nearest to 0."""
+    """Return for each polynomial the two points w of the unit circle at which it vanishes or, failing that,
+    comes nearest to 0.
+    """
     size = 2.0 * np.abs(ring.first)
     cosine = -ring.middle / np.where(size == 0.0, 1.0, size)
     spread = np.arccos(np.clip(cosine, -1.0, 1.0))

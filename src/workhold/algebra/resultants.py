@@ -7,9 +7,9 @@ The paper writes this with t = tan(psi / 2) and u = tan(phi / 2). Here the same 
     z = exp(i psi) = (1 + i t) / (1 - i t),    w = exp(i phi) = (1 + i u) / (1 - i u):
 
 a change of variables of degree one, so polynomials keep their degrees and their real roots, which move from
-the line to the unit circle. Nothing is at infinity there (psi = pi is z = -1). The factors 1 + t^2 and 1 +
-u^2 that the paper's denominators leave behind are z = 0 and z = infinity. Those drop out of a Laurent
-polynomial by themselves.
+the line to the unit circle. There no root is at infinity (psi = pi is z = -1). The factors 1 + t^2 and 1 +
+u^2 from the paper's denominators correspond to z = 0 and z = infinity, which drop out of a Laurent
+polynomial.
 
 A point x maps to C + R w + z x, with C, R the characteristic circle. A point of the right jaw maps to C + R w
 + z (x + s), with s the separation, the paper's sigma. At a fixed z a constraint is a polynomial in w and s,
@@ -66,9 +66,7 @@ BoolArray = NDArray[np.bool_]
 
 @define(frozen=True, eq=False)
 class ArrayTable:
-    """N items stored in arrays, each of which has a row for every
-    item; other fields are common to all items.
-    """
+    """N items stored in arrays with a row for every item; other fields are common to all items."""
 
     @property
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -136,10 +134,10 @@ class ContactSystems(ArrayTable):
         return np.asarray(self.rows[..., RADIUS])
 
     def compute_arc_misfit(self, k: int, m: int) -> Array:
-        """Return how far arcs k and m are from sliding, (N,); inf where one of them is a line.
+        """Return the deviation (N,) of arcs k and m from a sliding pair; inf if one of them is a line.
 
-        It is the larger of two differences: between their radii, and between their centres' distance and
-        their pegs' distance.
+        It is the larger of two differences: between their radii, and between the distance of their centres
+        and the distance of their pegs.
         """
         arcs = (self.rows[:, k, 0] != 0.0) & (self.rows[:, m, 0] != 0.0)
         apart = np.abs(self.middle[:, m] - self.middle[:, k])
@@ -160,12 +158,12 @@ class ContactSystems(ArrayTable):
         """Return z x + D for pegs k and m as (length, direction), (N, M) each, so that z x + D is their
         product.
 
-        x is the step from k to m, D the vector from centre m to centre k. Where the arcs do not slide, the
+        x is the step from k to m, D the vector from centre m to centre k. If the arcs do not slide, the
         length is 1.
 
-        Where the arcs slide, the length (with a sign) and the direction are exact right through the
-        coincidence. There z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) /
-        2). Symbols are those of ``algebra.resultants``.
+        If the arcs slide, the length (with a sign) and the direction are exact even at the coincidence. Then
+        z x + D = x (z - z0), and z - z0 = 2 i sin((psi - psi0) / 2) exp(i (psi + psi0) / 2). Symbols are
+        those of ``algebra.resultants``.
         """
         step = (self.point[:, m] - self.point[:, k])[:, None]
         between = (self.middle[:, k] - self.middle[:, m])[:, None]
@@ -212,7 +210,8 @@ def compute_circle_constraint(
 
 
 def compute_pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> TrigPolynomial:
-    """Return h or g of peg k, which is on the first peg's jaw; where arcs slide, z - z0 is divided out of g.
+    """Return the constraint h or g of peg k, which is on the first peg's jaw; g is divided by z - z0 if the
+    arcs slide.
 
     All N systems must have the same kind of feature k. Symbols are those of ``algebra.resultants``.
     """
@@ -230,7 +229,7 @@ def compute_pair_constraint(contacts: ContactSystems, k: int, psi: Array) -> Tri
 def subtract_circles(contacts: ContactSystems, k: int, m: int, psi: Array) -> tuple[Array, TrigPolynomial]:
     """Return (factor (N, M) of the separation, other terms) of g_sigma of peg m minus g_sigma of peg k.
 
-    The difference is linear in the separation, as its square cancels. It is divided by z - z0 where the arcs
+    The difference is linear in the separation, as its square cancels. It is divided by z - z0 if the arcs
     slide. Symbols are those of ``algebra.resultants``.
     """
     z, radius = np.exp(1j * psi), contacts.radius[:, 0, None]
@@ -392,7 +391,7 @@ def compute_triple_resultant(
     """Return (resultant of three left pegs, size of its terms), (N, M) each; ``second`` is the second peg's
     constraint.
 
-    Where the arcs of the second and the third peg slide, both are divided by the square of the length that
+    If the arcs of the second and the third peg slide, both are divided by the square of the length that
     ``ContactSystems.compute_center_difference`` returns.
     """
     value, size = compute_resultant_of_rings(second, compute_pair_constraint(contacts, 2, psi))

@@ -1,20 +1,20 @@
-r"""Peg pairs that fix the orientation while the part slides, so that the resultant tells nothing about the
-other pegs.
+r"""Peg pairs that fix the orientation while the part can slide, so that the resultant has no information about
+the other pegs.
 
 Two pegs of one jaw on parallel lines, or on equal arcs whose centres are exactly as far apart as the pegs,
-fix the orientation by themselves. Along the lines, or around the arcs, the part is free, and the other pegs
-stop it. In the resultant such a pair is a factor that carries no information about the others, and is divided
-out. So the orientation is taken from the pair, and the rest of the pose from the other contacts at that
-orientation: two circles or lines met at a time. One measure, ``ContactSystems.compute_arc_misfit``, decides
+fix the orientation by themselves. The part can still move along the lines or around the arcs until the other
+pegs stop it. In the resultant such a pair is a factor without information about the others, and it is divided
+out. So the pair gives the orientation, and the other contacts give the rest of the pose at that orientation,
+by intersecting two circles or lines at a time. One measure, ``ContactSystems.compute_arc_misfit``, decides
 what is divided out and what is listed here.
 
-Two such pairs at one orientation leave the part a freedom no contact resists, and never make a fixture
-together.
+Two such pairs at one orientation leave the part a freedom that no contact resists, so they never form a
+fixture together.
 
-The resultant of Type I also says nothing when both jaws hold the same two lines or circles with the same
-step, level with each other. Pegs in the same place (separation 0) fit at every orientation. The fixtures
-among these have the jaws' pegs in the two different places that an orientation allows, which are level at a
-few orientations only.
+The resultant of Type I is also useless if both jaws touch the same two lines or circles with the same step,
+level with each other. Pegs in the same place (separation 0) fit at every orientation. In fixtures of this
+kind the jaws' pegs are in the two different places that an orientation allows, and these are level at a few
+orientations only.
 """
 
 from __future__ import annotations
@@ -109,17 +109,17 @@ def find_sliding_pairs(
 def bound_orientation_error(
     sliding_pair: SlidingPair, row: Array, point: Complex, step: complex, slope: Array
 ) -> Array:
-    """Return how far in radians the orientation of a sliding pair may be off, (N,).
+    """Return an error bound in radians of the orientation of a sliding pair, (N,).
 
-    Contacts that miss by e turn the pegs by e over the distance between their two lines of action.
+    An error e of the contacts turns the pegs by e divided by the distance between their two lines of action.
 
     Parameters
     ----------
     row : feature of the first peg.
     point : (N,) places of the first peg as complex numbers.
     step : from the first peg to the second, turned by the orientation, in mm.
-    slope : (N,) factors on the error: bounds of how far the place of the first peg moves when the curves that
-        determine it move by 1.
+    slope : (N,) factors on the error: bounds of the first peg's movement when the curves that determine its
+        place move by 1.
     """
     normal = (
         row[AXIS_Y] - 1j * row[AXIS_X] if row[IS_ARC] == 0.0 else (point - row[X] - 1j * row[Y]) / row[RADIUS]
@@ -131,11 +131,11 @@ def bound_orientation_error(
 
 
 def intersect_carriers(a: Array, b: Array, shift: complex) -> list[tuple[complex, float]]:
-    """Return the points of the line or circle of feature ``a`` that, moved by ``shift``, are on that of
-    feature ``b``.
+    """Return the points of the line or circle of feature ``a`` that lie, after a move by ``shift``, on the
+    line or circle of feature ``b``.
 
-    There are up to two. Each is a pair (point as a complex number, bound of how far the point moves when
-    either line or circle moves by 1).
+    There are up to two. Each is a pair (point as a complex number, bound of the point's movement when either
+    line or circle moves by 1).
     """
     one, two = complex(a[X], a[Y]), complex(b[X], b[Y]) - shift
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
@@ -162,11 +162,11 @@ def intersect_carriers(a: Array, b: Array, shift: complex) -> list[tuple[complex
 
 
 def bound_steepness(size: float, across: float) -> float:
-    """Return a bound of how far a meeting point of two curves moves when the curves move by 1, at most
-    ``STEEPEST``.
+    """Return a bound, at most ``STEEPEST``, of the movement of a meeting point of two curves when the curves
+    move by 1.
 
-    The bound is 3 ``size`` / ``across``: ``across`` is small against ``size`` where the curves meet at a
-    small angle.
+    The bound is 3 ``size`` / ``across``: ``across`` is small against ``size`` if the curves meet at a small
+    angle.
     """
     return min(3.0 * size / max(across, size / STEEPEST), STEEPEST)
 
@@ -193,7 +193,7 @@ def find_two_and_two_contacts(
 ) -> list[SimultaneousContacts]:
     """Return the simultaneous contacts of a left pair that slides and a right pair that stops it.
 
-    Contacts with a sliding right pair need no search of their own: they are these after a half turn.
+    Contacts with a sliding right pair need no separate search: they are the same after a half turn.
     """
     found = []
     sectors = pairs.sectors
@@ -238,12 +238,12 @@ def find_stopping_rows(
     ----------
     row : the left peg's feature.
     psi : orientation in radians.
-    height : of the first right peg along the frame's y axis, in mm.
+    height : height of the first right peg along the frame's y axis, in mm.
 
     Returns
     -------
     (rows (M,) of the first right peg, counted from the first left peg; places (M,) of the left peg as complex
-        numbers; bounds (M,) of how much they move per change of height or orientation)
+        numbers; bounds (M,) of their movement per change of height or orientation)
     """
     middle = ((row[X] + 1j * row[Y]) * np.exp(-1j * psi)).imag
     tangent = ((row[AXIS_X] + 1j * row[AXIS_Y]) * np.exp(-1j * psi)).imag
@@ -333,8 +333,8 @@ def find_level_orientations(contacts: ContactSystems) -> tuple[IntArray, Array]:
     The systems are those for which :func:`are_alike_on_both_jaws` is True. Return (indices of systems, psi in
     radians). The places are mirror images in the line (of the second peg) or in the line through the circles'
     centres (with the pegs brought together). So either the line is level, Re(n* z) = 0, or that line of
-    centres is upright, Re(x + D / z) = 0. There x is the step, and D the vector from the second centre to the
-    first. Lines alone have one place, and so no fixture.
+    centres is upright, Re(x + D / z) = 0. Here x is the step, and D the vector from the second centre to the
+    first. Two lines allow only one place, and so no fixture.
     """
     first = np.flatnonzero(contacts.rows[:, 0, IS_ARC] != 0.0)
     line = first[contacts.rows[first, 1, 0] == 0.0]

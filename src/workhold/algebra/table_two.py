@@ -74,8 +74,7 @@ class CaseRow:
 
 
 def make_random_contacts(case: tuple[int, int], count: int, seed: int) -> ContactSystems:
-    """Return ``count`` random systems of a case, each of which has a real pose; ``seed`` is that of the
-    random numbers.
+    """Return ``count`` random systems of a case, each with a real pose; ``seed`` seeds the random numbers.
 
     The case is described at ``resultants.compute_resultant``; on each jaw arcs come before lines.
     """
@@ -102,7 +101,7 @@ def make_random_contacts(case: tuple[int, int], count: int, seed: int) -> Contac
 
 
 def count_distinct_poses(poses: Poses) -> int:
-    """Return the number of different poses; poses that several starting values lead to count once."""
+    """Return the number of different poses; a pose reached from several starting values counts once."""
     place = [poses.place.real, poses.place.imag, poses.separation]
     values = np.stack([poses.owner, np.cos(poses.psi), np.sin(poses.psi), *place], axis=1)
     same = (np.abs(values[:, None] - values[None]) <= SAME).all(axis=2)

@@ -102,7 +102,7 @@ class ClusterWorkers:
             self.stack.close()
 
     def note_worker_event(self, event: tuple[float, Any]) -> None:
-        """Notify the watcher where an event of the scheduler says that a worker is lost.
+        """Notify the watcher if an event of the scheduler tells that a worker is lost.
 
         Runs in a thread of the Dask client.
         """
@@ -208,7 +208,7 @@ class ClusterWorkers:
     def get_outcome(self, future: Any, task: Task) -> Outcome | None:
         """Return the outcome of a task whose future is done.
 
-        Return None, and set ``gone``, where the scheduler has lost the task.
+        Return None, and set ``gone``, if the scheduler has lost the task.
 
         Raises
         ------
@@ -277,7 +277,7 @@ def check_address(address: str) -> str:
 def run_on_worker(task: Task, store: RecordStore | None) -> Outcome:
     """Run a task in this process and return its outcome.
 
-    Where there is a store, the record is written to it instead of being returned.
+    If there is a store, the record is written to it instead of being returned.
     """
     from distributed import get_worker
 

@@ -1,14 +1,13 @@
-"""Durations of tasks: estimated before, so that the longest come first, and measured afterwards.
+"""Durations of tasks: estimated in advance, so that the longest come first, and measured afterwards.
 
 The estimate is a power law. A search grows with the number of faces and with the number of steps that the
 lattice offers between two pegs on a part of that size. Constants and exponents come from a fit to measured
-runs (``benchmarks/batch_estimate.py``); docs/benchmarks.md says how near it comes. Only the order and the
-proportions of estimates count; the speed of a machine is found while it runs.
+runs (``benchmarks/batch_estimate.py``); docs/benchmarks.md gives its accuracy. Only the order and the ratios
+of estimates matter; the speed of a machine is found while it runs.
 
-Durations are kept in a file of lines beside the records; this file does not say whether a task is done.
-Records are the same bytes wherever and however fast they came to be, so this is kept apart from them. Each
-line is appended at once, so that two runs can write one file; a line cut short by the end of a run is passed
-over.
+Durations are kept in a text file beside the records, which does not tell whether a task is done. They are not
+in the records, because the bytes of a record must not depend on the machine or its speed. Each line is
+appended in one write, so that two runs can share the file; a line cut short by the end of a run is ignored.
 """
 
 from __future__ import annotations

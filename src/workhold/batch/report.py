@@ -1,7 +1,7 @@
 """Output of a batch for people and other programs: a report, two tables and, if asked for, setup sheets.
 
-The report is one page of plain HTML that needs nothing else, with what failed and why, and a table to sort.
-Records and sheets are linked where they stand beside the page; all else, pictures too, is in it.
+The report is one self-contained page of plain HTML, with the failures and their reasons, and a sortable
+table. Records and sheets beside the page are linked; everything else, including pictures, is in the page.
 """
 
 from __future__ import annotations
@@ -102,13 +102,13 @@ row.hidden=!words.every(word=>text.includes(word));}});
 
 @frozen
 class Summary:
-    """Headline and sentences that stand over the table.
+    """Headline and sentences above the table.
 
     Parameters
     ----------
-    headline : headline that says what was asked.
-    sentences : how it went.
-    events : events on the way, such as the death of a worker, one sentence each.
+    headline : headline that describes the request.
+    sentences : description of the run.
+    events : events during the run, such as the death of a worker, one sentence each.
     """
 
     headline: str
@@ -161,8 +161,8 @@ class Report:
         self.rows.append(self.make_row(row, self.draw_first_choice(job), sheet))
 
     def draw_first_choice(self, job: JobRow) -> str:
-        """Return a picture of a job's first choice as HTML;
-        "" where it has none, and beyond :data:`MOST_PICTURES`.
+        """Return a picture of a job's first choice as HTML; "" if it has none, and beyond
+        :data:`MOST_PICTURES`.
         """
         row = job.row
         if row["state"] != "held" or self.pictures >= MOST_PICTURES:
@@ -263,7 +263,7 @@ class Report:
         return f"{format_count(self.states.total(), 'job')}: {', '.join(counted)}." if counted else "No jobs."
 
     def list_failures(self) -> str:
-        """Return a table of what failed, where and why, as HTML."""
+        """Return a table of the failures, with part, toolkit and reason, as HTML."""
         rows = "".join(
             f"<tr><td>{escape_html(part)}</td><td>{escape_html(', '.join(toolkits))}</td>"
             f"<td>{escape_html(reason)}</td></tr>\n"
@@ -291,7 +291,7 @@ def make_cell(content: str, *, key: str | None = None, name: str = "", bad: bool
 
 
 def format_figure(value: float | None, decimals: int) -> str:
-    """Return a table cell with a number of so many decimals; an empty cell for None."""
+    """Return a table cell with a number rounded to a number of decimals; an empty cell for None."""
     if value is None:
         return make_cell("", name="n")
     return make_cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")

@@ -1,8 +1,7 @@
-"""A batch from the first drawing to the last answer: its jobs, and how they are done.
+"""A batch from the first drawing to the last answer: its jobs, and their execution.
 
-A job is a part and a toolkit to hold it in. Jobs that have a record are done and skipped; the others are
-handed out, longest first. A run that ends, in whatever way, leaves complete records, so that the next run
-continues.
+A job is a part and a toolkit to hold it in. Jobs that have a record are skipped; the others are handed to
+workers, longest first. Records are complete however a run ends, so that the next run can continue.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ class ToolkitQuery:
     ----------
     name : name of the toolkit.
     query : query for :data:`ANY_PART`, a placeholder that each part replaces; or the error that says why
-        nothing can be asked.
+        there is no query.
     """
 
     name: str
@@ -119,7 +118,7 @@ class BatchPart:
             return cls(request, refusal=str(error))
 
     def apply_record(self, record: Mapping[str, Any]) -> None:
-        """Take content, faces, size and remarks, or the refusal, from the record of the part's drawing."""
+        """Copy content, faces, size and remarks, or the refusal, from the record of the part's drawing."""
         self.refusal = record["refusal"]
         if not self.refusal:
             # What may be touched makes outlines of one shape two parts; a prism is its shape alone.
@@ -147,9 +146,9 @@ class BatchJob:
     ----------
     part, held_in : the part, and the toolkit with its query.
     name : name of the job's task; empty where there is none.
-    refusal : why there is no task: the part cannot be read, or the query cannot be asked; empty otherwise.
+    refusal : reason why there is no task: the part cannot be read, or the query is invalid; empty otherwise.
     estimate : predicted seconds of its task.
-    failure : why the task has failed in a way that may not occur again; empty otherwise.
+    failure : reason of a failure that may not occur again; empty otherwise.
     """
 
     part: BatchPart
@@ -188,7 +187,7 @@ class ProgressCounter(Protocol):
 
 @define(eq=False)
 class BatchState:
-    """Parts and jobs of a run, with what is known of them.
+    """Parts and jobs of a run, with their outcomes so far.
 
     Parameters
     ----------
@@ -278,7 +277,7 @@ class BatchRunner:
     def keep_outcome(self, outcome: Outcome) -> None:
         """Keep the duration of a task, and its record unless the worker has kept it already.
 
-        Raises InputError where there is no room.
+        Raises InputError if the disk is full.
         """
         try:
             self.measured.add(outcome)
@@ -350,7 +349,7 @@ def read_parts(batch: BatchState, work: BatchRunner) -> None:
 def list_jobs(part: BatchPart, best: int) -> Iterator[BatchJob]:
     """Yield a job for each toolkit of a part.
 
-    A job whose query cannot be asked, or whose part cannot be read, has a refusal and no name.
+    A job with an invalid query, or with a part that cannot be read, has a refusal and no name.
     """
     for held_in in part.request.held_in:
         if part.refusal or not part.content:

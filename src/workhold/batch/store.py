@@ -1,16 +1,15 @@
 """Records of the outcomes of tasks, as bytes, and the stores that keep them.
 
 The record of an answer is a result file (``files.result.writer``) of the best fixtures, which every command
-that takes one can open. That of a drawing holds the part in the form that ``files.part.data`` reads, and what
-is to be said about it. A refusal, for what cannot be read or asked, is a record too, since it would be
-refused again.
+for result files can open. The record of a drawing has the part, in the form that ``files.part.data`` reads,
+and remarks on it. A refusal of a part or query is a record too, since it would be refused again.
 
-A folder keeps each record in a file under its task's name, written whole or not at all. Beside it stands the
-checksum of its name and its bytes, which is written first: a record that was changed, cut short or swapped
-afterwards does not count. Two runs may use one folder at a time: a record that both write has the same bytes,
-and gets its name in one step. An object store or another machine keeps them wherever fsspec can write:
-``s3://bucket/folder``, ``sftp://host/folder``. Workers of a cluster write there themselves, so that no record
-passes through the machine that asks.
+A folder keeps each record in a file under its task's name, written whole or not at all. A second file has the
+checksum of its name and its bytes and is written first: a record that was changed, cut short or swapped
+afterwards does not count. Two runs may use one folder at the same time: a record that both write has the same
+bytes, and gets its name in one step. Records may also be kept on an object store or another machine, wherever
+fsspec can write: ``s3://bucket/folder``, ``sftp://host/folder``. Workers of a cluster write there directly,
+so that records do not pass through the user's machine.
 """
 
 from __future__ import annotations
@@ -146,11 +145,11 @@ class RecordStore(Protocol):
     __slots__ = ()
 
     def has(self, name: str) -> bool:
-        """Return whether a complete record of a task is there, which means that the task is done."""
+        """Return whether a complete record of a task exists: then the task is done."""
         return self.read(name) is not None
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is no complete one."""
+        """Return the record of a task; None if there is no complete one."""
 
     def write(self, name: str, record: bytes) -> None:
         """Keep the record of a task.
@@ -158,7 +157,7 @@ class RecordStore(Protocol):
         Raises
         ------
         InputError
-            When it cannot be kept.
+            When it cannot be written.
         """
 
     def get_location(self, name: str) -> str:
@@ -191,7 +190,7 @@ class FolderStore(RecordStore):
         return self.folder / name[:FOLDER_LETTERS] / f"{name}.json"
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is no complete one."""
+        """Return the record of a task; None if there is no complete one."""
         path = self.make_record_path(name)
         try:
             content, line = (read_limited(file, RECORD) for file in (path, path.with_suffix(CHECKSUM)))
@@ -236,7 +235,7 @@ class UrlStore(RecordStore):
         return system, path
 
     def read(self, name: str) -> bytes | None:
-        """Return the record of a task; None where there is no complete one."""
+        """Return the record of a task; None if there is no complete one."""
         system, path = self.locate_record(name)
         try:
             content: bytes = system.cat_file(path)
@@ -248,7 +247,7 @@ class UrlStore(RecordStore):
     def write(self, name: str, record: bytes) -> None:
         """Write a record and its checksum; raise InputError where they cannot be written.
 
-        A record that is cut short fails its checksum, and so does not count.
+        A record that is cut short does not match its checksum, and so does not count.
         """
         system, path = self.locate_record(name)
         try:

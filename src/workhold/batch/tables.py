@@ -168,8 +168,9 @@ def fill_job_row(row: Row, named: Row, record: Mapping[str, Any], job: BatchJob)
 def is_held_by_friction(fixture: Mapping[str, Any]) -> bool | None:
     """Return whether friction holds a fixture, given as an entry of a result file.
 
-    Between flat jaws: True where both jaws press all over their contacts and neither touches corners only.
-    Under straps: True where a push by hand seats the part and all loads are held; None where nobody looked.
+    Between flat jaws it is True if both jaws press over their whole contacts and neither touches corners
+    only. Under straps it is True if a push by hand seats the part and all loads are held; None if straps were
+    not searched.
     """
     if is_strapped(fixture):
         needs = [

@@ -1,10 +1,10 @@
 """Tasks for workers, their names and outcomes, and the interface of a queue of workers.
 
-A worker turns a task into its record, and needs nothing but the task and this program. Records depend on
-nothing but the task, to the byte; durations are kept elsewhere. A name is the hash of all that decides a
-record: version, number of answers (``version.ANSWERS``), forms of records, conventions, part, toolkit and
-what is asked. So the same work has the same name wherever it is done. A queue takes tasks, gives them to
-workers, and yields their outcomes.
+A worker turns a task into its record, and needs only the task and this program. The bytes of a record depend
+only on the task; durations are kept elsewhere. A name is the hash of everything that determines a record:
+version, number of answers (``version.ANSWERS``), forms of records, conventions, part, toolkit and query. So
+the same work has the same name on every machine. A queue takes tasks, gives them to workers, and yields their
+outcomes.
 """
 
 from __future__ import annotations
@@ -101,11 +101,11 @@ class Task:
 
     @property
     def most_seconds(self) -> float:
-        """Seconds after which a task that is not done is given up; inf without such a limit."""
+        """Time limit of the task in seconds; inf without a limit."""
         return inf
 
     def prepare(self) -> None:
-        """Import what the work needs.
+        """Import the libraries that the work needs.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class Task:
         raise NotImplementedError
 
     def make_record(self) -> bytes:
-        """Return the record of the work; raise InputError for what cannot be read or asked."""
+        """Return the record of the work; raise InputError if the part cannot be read or the query is invalid."""
         raise NotImplementedError
 
 
@@ -168,7 +168,7 @@ class QueryTask(Task):
     ----------
     part : record of the part's drawing.
     query : the query, for a placeholder part that this part replaces.
-    best : number of fixtures to keep, the best ones; all are counted or, where they are very many, estimated.
+    best : number of best fixtures to keep; all fixtures are counted or, if very many, estimated.
     """
 
     part: bytes = field(repr=False)
@@ -180,7 +180,7 @@ class QueryTask(Task):
         import workhold.search.design  # noqa: F401
 
     def make_record(self) -> bytes:
-        """Return the result file with the best fixtures; raise InputError for what cannot be asked."""
+        """Return the result file with the best fixtures; raise InputError for an invalid query."""
         from workhold.files.result.writer import write_result_text
         from workhold.model.notes import Many
         from workhold.search.design import answer
@@ -209,7 +209,7 @@ class FirstFixtures:
     most : number of fixtures to keep.
     folder : folder with room for sorting.
     table : the fixtures kept.
-    result : the result that they belong to, with their seating where it is known.
+    result : the result that they belong to, with their seating if it is known.
     """
 
     most: int
@@ -241,9 +241,9 @@ class Outcome:
     Parameters
     ----------
     name : name of the task.
-    record : record to keep; None where the task failed in a way that may not occur again, or where the worker
-        has written the record to the store.
-    failure : why there is no record, in a sentence; empty otherwise.
+    record : record to keep; None if the task failed in a way that may not occur again, or if the worker has
+        already written the record to the store.
+    failure : a sentence that says why there is no record; empty otherwise.
     seconds : seconds that the work took.
     worker : name of the worker.
     has_no_room : whether it failed because a disk is full, so that other tasks will fail too.
@@ -317,7 +317,7 @@ class TaskObserver(Protocol):
         """Note that a worker has begun a task with this title."""
 
     def note_ended(self, worker: str) -> None:
-        """Note that a worker has nothing to do, or has ended."""
+        """Note that a worker is idle or has ended."""
 
     def notify(self, sentence: str) -> None:
         """Pass on a sentence about an event, such as the death of a worker."""

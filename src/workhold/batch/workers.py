@@ -157,7 +157,7 @@ class LocalWorkers:
         )
 
     def start_worker(self, title: str) -> Worker:
-        """Return a worker whose process has been started and need not be ready yet."""
+        """Return a worker whose process has been started; it need not be ready yet."""
         context = get_context("spawn")
         ours, theirs = context.Pipe()
         memory = compute_memory_share(self.count) if self.memory_bytes is None else self.memory_bytes
@@ -186,8 +186,8 @@ class LocalWorkers:
     def receive_outcome(self, one: Worker) -> Outcome | None:
         """Return the outcome that a worker has sent.
 
-        Return None where the worker says that it is ready, or has ended, in which case it is removed. Raises
-        InputError where too many workers in a row end before they are ready.
+        Return None if the worker reports that it is ready. Return None as well, and remove the worker, if it
+        has ended. Raises InputError if too many workers in a row end before they are ready.
         """
         try:
             kind, _, value = one.connection.recv()
@@ -245,7 +245,7 @@ class LocalWorkers:
 
 
 def explain_worker_end(one: Worker) -> str:
-    """Return words on how a worker's process ended, such as "by signal 9" or "with code 1"."""
+    """Return words on the end of a worker's process, such as "by signal 9" or "with code 1"."""
     code = one.process.exitcode
     return f"by signal {-code}" if code is not None and code < 0 else f"with code {code}"
 

@@ -82,8 +82,9 @@ class CurveTable:
 
     @cached_property
     def spans(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The orientations psi in radians from which (N,) and to which (N,) each curve is used; the first in
-        [0, 2 pi)."""
+        """The orientations psi in radians at which the use of each curve begins (N,), in [0, 2 pi), and ends
+        (N,).
+        """
         reals = self.curves.reals
         first = (reals[:, NEAR_FROM] - reals[:, SHIFT]) % tau
         return first, first + (reals[:, NEAR_TO] - reals[:, NEAR_FROM])
@@ -144,10 +145,10 @@ def make_curve_table(
     Parameters
     ----------
     tails : indices of the features to take as tails; None for all.
-    threads : how many threads share the work; the result does not depend on it.
-    cancel : when set, tails that have not begun yet get no curves.
+    threads : number of threads; the result does not depend on it.
+    cancel : when set, tails not yet begun get no curves.
     centers : result of :func:`number_centers`, for callers that ask repeatedly.
-    near : which spots locators may touch together; curves whose contacts it rules out are left out.
+    near : spots that locators may touch together; curves with other contacts are left out.
     within : (K, 2) ranges of psi in radians outside which curves may be left out; (0, 2) for no limit.
     """
     centers = number_centers(rows) if centers is None else centers

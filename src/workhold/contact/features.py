@@ -50,9 +50,9 @@ class ContactFeature:
     Parameters
     ----------
     face : number of the face that the peg touches.
-    segment : where the peg's centre may lie; its normals are those of the contact.
+    segment : places of the peg's centre; its normals are those of the contact.
     cut_from : the piece of the locus from which keep-out zones or tools cut the segment; the segment itself
-        where none did.
+        if none was cut.
     """
 
     face: int
@@ -90,11 +90,11 @@ def list_features_met(workpiece: Workpiece, carrier: Carrier) -> list[ContactFea
 
 
 def list_avoided_faces(workpiece: Workpiece, restrictions: Restrictions) -> set[int]:
-    """Return the numbers of the faces that nothing may touch: those
-    to be avoided, and those that cannot be touched.
+    """Return the numbers of the faces that pegs must not touch: those to be avoided, and those that cannot be
+    touched.
 
-    Where carriers have outlines of their own, the number of a segment to avoid stands for the faces of the
-    solid above it. All faces under these faces of the solid, in every outline, are then avoided.
+    If carriers have outlines of their own, the number of a segment to avoid denotes the faces of the solid
+    above it. Then the segments under these faces of the solid are avoided in every outline.
 
     Raises
     ------
@@ -119,14 +119,13 @@ def find_allowed_features(
     body_radius: float,
     swept: Sequence[tuple[SweptSpans, float]] = (),
 ) -> list[ContactFeature]:
-    """Return contact features without avoided faces and without
-    places where a peg's body would be in the way.
+    """Return contact features without avoided faces and without places at which a peg's body would collide.
 
-    A body is in the way over a keep-out zone, and where it comes too near to what a program sweeps.
+    A body collides over a keep-out zone, and if it comes too near to the space that a program sweeps.
 
     Parameters
     ----------
-    body_radius : of the pegs' bodies, in mm.
+    body_radius : radius of the pegs' bodies, in mm.
     swept : pairs (swept spans, distance in mm that a peg's centre keeps from them in addition to the tool's
         radius); the pair for the peg itself comes first, one for its shoulder may follow.
 
@@ -222,13 +221,13 @@ def measure_end_distances(rows: NDArray[np.float64], points: NDArray[np.float64]
 def measure_end_slacks(
     features: list[ContactFeature], margin: float = 0.0, locus: list[ContactFeature] | None = None
 ) -> NDArray[np.float64]:
-    """Return how far in mm a contact may lie past the place
-    ``margin`` mm inside the low and the high end, shape (F, 2).
+    """Return the tolerance (F, 2) in mm by which a contact may lie past the point ``margin`` mm inside the
+    low and the high end.
 
     Where two features join tangentially, a contact exactly at the joint counts as on both and is listed once,
-    so rounding is forgiven there. Any other end does not count: there the peg also touches a second face or
-    stands on a corner. A distance of exactly ``margin`` is enough. A keep-out zone cuts a feature where the
-    peg's body touches it, which is allowed: the margin counts from the ends that the feature has without
+    so rounding is tolerated there. A contact at any other end does not count: there the peg also touches a
+    second face or a corner. A distance of exactly ``margin`` is enough. A keep-out zone cuts a feature where
+    the peg's body touches it, which is allowed: the margin counts from the ends that the feature has without
     zones.
 
     Parameters
@@ -255,8 +254,8 @@ def measure_end_slacks(
 
 
 def measure_joint_slacks(pieces: list[Segment]) -> NDArray[np.float64]:
-    """Return how far in mm a contact may lie past the low and the
-    high end of pieces of the locus, shape (F, 2).
+    """Return the tolerance in mm, (F, 2), by which a contact may lie past the low and the high end of pieces
+    of the locus.
 
     It is ``END_SLACK`` at an end that joins another piece tangentially, else ``-END_SLACK``.
     """

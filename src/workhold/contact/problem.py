@@ -49,7 +49,7 @@ ROUNDING = 1e-12
 
 @frozen
 class SearchFrame:
-    """A toolkit as the search sees it: one carrier stands still, one slides along its rows, in direction +x.
+    """A toolkit in the frame of the search: one carrier is fixed, one slides along its rows, in direction +x.
 
     Requirements of other toolkits. Both carriers need one pitch only where both hold two pegs: Type I asks
     for heights that differ by whole row pitches (``kernels.base.tables.Lattice``). Chords are made of the
@@ -60,9 +60,9 @@ class SearchFrame:
 
     Parameters
     ----------
-    toolkit : as it was asked for.
+    toolkit : the toolkit of the query.
     quarters : number of quarter turns, counter-clockwise, from the frame back to the toolkit.
-    standing, moving : its carriers in the frame, places in mm about the toolkit's origin.
+    standing, moving : its carriers in the frame; places in mm relative to the toolkit's origin.
     """
 
     toolkit: Toolkit
@@ -107,7 +107,7 @@ class SearchFrame:
 
     @property
     def carriers(self) -> tuple[Carrier, Carrier]:
-        """Both carriers in the frame, the one that stands still first."""
+        """Both carriers in the frame, the fixed one first."""
         return self.standing, self.moving
 
     @property
@@ -153,8 +153,8 @@ class SearchFrame:
     ) -> tuple[IntArray, IntArray]:
         """Return columns and rows (N, 4) of holes in the toolkit's numbering, given those in the frame's.
 
-        ``standing`` (N, 4) is True for holes of the carrier that stands still. Where the carriers are endless
-        across the travel, the lowest number in that direction is 0.
+        ``standing`` (N, 4) is True for holes of the fixed carrier. If the carriers are endless across the
+        travel, the lowest number in that direction is 0.
         """
         if self.quarters == 0:
             return column, row
@@ -237,14 +237,14 @@ class Problem:
 
     Parameters
     ----------
-    query : the question.
+    query : the query.
     loci : for each carrier of the frame the contact features of its pegs, also those that are ruled out,
         ordered by face.
     rows : (F, 12) contact features, with the slack of their ends beside the contact margin
         (``contact.features.end_slacks``).
     faces : (F,) number of each feature's face.
     standing, moving : first and past-the-last number of the features that pegs of each carrier touch. Both
-        are equal where their pegs are alike; else features of the standing carrier come first.
+        are equal if their pegs are alike; else features of the fixed carrier come first.
     outlines : (S, 10) the faces that pegs of the standing carrier keep from, and those of the moving one; one
         array where both meet one outline.
     diameter : largest distance in mm between two peg centres that touch the part.
@@ -272,8 +272,8 @@ class Problem:
         Raises
         ------
         InputError
-            When the peg fits nowhere along the part, a face to avoid does not exist, or nothing is left to
-            touch. Also when two pegs can stand in too many ways (``limits``).
+            When the peg is too large to touch any face, a face to avoid does not exist, or no face is left to
+            touch. Also when there are too many ways to place two pegs (``limits``).
         """
         workpiece, restrictions = query.workpiece, query.restrictions
         radius = max(carrier.peg_radius for carrier in query.toolkit.carriers)
@@ -322,7 +322,7 @@ class Problem:
 
     @property
     def toolkit(self) -> Toolkit:
-        """The toolkit to hold it in, as it was asked for."""
+        """The toolkit of the query."""
         return self.query.toolkit
 
     @property
@@ -336,8 +336,8 @@ class Problem:
         return self.query.restrictions
 
     def find_swept_spans(self, carrier: Carrier) -> tuple[SweptSpans, float] | None:
-        """Return what the program sweeps at the heights of a carrier's pegs, and the clearance to keep from
-        it in mm.
+        """Return (the spans that the program sweeps at the heights of a carrier's pegs, the clearance to keep
+        from them in mm).
 
         Return None without a program. The spans are in the part's own coordinates, not about its centre.
         """
@@ -351,7 +351,7 @@ class Problem:
 
     @property
     def backward_error(self) -> float:
-        """A bound in mm of how far rounding puts the features' rows off the drawing."""
+        """A bound in mm of the distance between the features' rounded rows and the drawing."""
         center = self.workpiece.center
         return ROUNDINGS * (
             abs(center[0]) + abs(center[1]) + float(np.abs(self.rows[:, [X, Y, RADIUS]]).max())
@@ -364,7 +364,7 @@ class Problem:
 
     @cached_property
     def limits(self) -> Limits:
-        """The rules that bound a fixture, as kernels take them."""
+        """The rules that bound a fixture, in the form that kernels take."""
         frame = self.frame
         return Limits(
             frame.gap,
@@ -379,7 +379,7 @@ class Problem:
 
     @property
     def setting(self) -> Setting:
-        """The lattice, limits, peg radii and errors that a proof needs, as kernels take them."""
+        """The lattice, limits, peg radii and errors that a proof needs, in the form that kernels take."""
         frame = self.frame
         standing, moving = (carrier.least_standoff for carrier in frame.carriers)
         return Setting(frame.lattice, self.limits, standing, moving, self.backward_error)

@@ -1,15 +1,15 @@
-"""What a program sweeps at the heights of pegs: areas of the plane that every element of a fixture keeps
-clear of.
+"""The areas of the plane that a program sweeps at the heights of pegs; every element of a fixture keeps clear
+of them.
 
-A swept piece is the path of a cylinder's axis with the cylinder's radius. An element of a fixture is clear
-where its distance from each path is at least the radius plus the clearance. So what matters for a disc, a
-capsule or a half plane is the least value of distance minus radius over all pieces. Pieces of one path count
-once, with the largest radius. A tree of boxes finds the nearest of thousands.
+A swept piece is the path of a cylinder's axis with the cylinder's radius. An element of a fixture is clear if
+its distance from each path is at least the radius plus the clearance. So for a disc, a capsule or a half
+plane, the least value of distance minus radius over all pieces decides. Pieces of one path count once, with
+the largest radius. A tree of boxes finds the nearest of thousands.
 
 Glossary
 --------
 span : one segment or arc of a swept piece's path; a filled box has four, and its inside.
-reach : distance less radius, in mm.
+reach : distance minus radius, in mm.
 """
 
 from __future__ import annotations
@@ -110,12 +110,12 @@ class SweptSpans:
 
     @classmethod
     def from_program(cls, program: Program, height: float) -> SweptSpans:
-        """Return the spans of what a program sweeps at heights up to ``height`` in mm."""
+        """Return the spans that a program sweeps at heights up to ``height`` in mm."""
         return cls.from_height_range(program, -inf, height)
 
     @classmethod
     def from_height_range(cls, program: Program, low: float, high: float) -> SweptSpans:
-        """Return the spans of what a program sweeps between the heights ``low`` and ``high`` in mm."""
+        """Return the spans that a program sweeps between the heights ``low`` and ``high`` in mm."""
         if program.find_boxed_moves().any():
             return cls.from_pieces(program.iterate_swept_pieces(low, high))
         one = program.make_arrays(*program.pair_moves_with_cylinders(), low, high)
@@ -163,12 +163,12 @@ class SweptSpans:
         """Return (least reach in mm from the half plane below a level line to the spans of the turned part,
         nearest span).
 
-        The reach is distance minus cylinder radius. Return (inf, -1) where nothing is swept.
+        The reach is distance minus cylinder radius. Return (inf, -1) if nothing is swept.
 
         Parameters
         ----------
-        theta : by which the part is turned about its origin, in radians.
-        height : of the line in mm, above the part's origin.
+        theta : angle by which the part is turned about its origin, in radians.
+        height : height of the line in mm above the part's origin.
         """
         if not len(self.line):
             return inf, -1
@@ -196,8 +196,8 @@ class SweptSpans:
         its tool).
 
         The reach is distance minus cylinder radius. ``corners`` (4, 2) of the box are counter-clockwise. The
-        reach is -inf where the two overlap because a path begins inside the box or a filled box holds one of
-        its corners; it is inf, and line and tool are -1, where nothing is swept.
+        reach is -inf if a path begins inside the box, or a filled box contains one of its corners. It is inf,
+        and line and tool are -1, if nothing is swept.
         """
         ahead = np.roll(corners, -1, axis=0)
         sides, off = ahead - corners, self.compute_start_points()[:, None] - corners
@@ -216,7 +216,7 @@ class SweptSpans:
         return float(reach[side]), int(self.line[span]), int(self.tool[span])
 
     def bound_strip(self, pose: Pose, left: float, right: float, margin: float) -> tuple[Array, Array, Array]:
-        """Return (least y (N,), greatest y (N,), reach (N,)) in mm of what is swept beside an upright strip.
+        """Return (least y (N,), greatest y (N,), reach (N,)) in mm of the swept spans near an upright strip.
 
         The strip lies between x = ``left`` and ``right`` in the frame of ``pose``, in which y is given, too.
         The reach is a cylinder's radius plus ``margin``; spans and filled boxes farther from the strip than
@@ -258,8 +258,8 @@ def drop_repeated_paths(spans: Array) -> IntArray:
     """Return the indices, ascending, of the spans (N, 6) to keep: for each path the span with the largest
     radius.
 
-    Paths run in either direction are the same. What a smaller cylinder sweeps on a path, the largest sweeps
-    as well.
+    Paths run in either direction are the same. On the same path, the largest cylinder sweeps everything that
+    a smaller one sweeps.
     """
     backward = (spans[:, 0] > spans[:, 2]) | ((spans[:, 0] == spans[:, 2]) & (spans[:, 1] > spans[:, 3]))
     ends = np.where(backward[:, None], spans[:, [2, 3, 0, 1]], spans[:, :4])
@@ -309,8 +309,8 @@ def make_span_rows(spans: Array) -> Array:
 
 
 def find_span_path(row: Array) -> tuple[PathVertex, ...]:
-    """Return the vertices (x, y, bulge) of a span's path, from its
-    kernel row (10,): two, or one where it has no length.
+    """Return the vertices (x, y, bulge) of a span's path, from its kernel row (10,): two vertices, or one if
+    it has no length.
     """
     middle, axis, half = row[[X, Y]], row[[AXIS_X, AXIS_Y]], float(row[HALF_EXTENT])
     if row[IS_ARC]:
@@ -412,8 +412,8 @@ def list_swept_clearances(query: Query, carrier: Carrier) -> list[tuple[SweptSpa
 
 
 def find_swept_at_pegs(query: Query, carrier: Carrier) -> tuple[SweptSpans, float] | None:
-    """Return (what a query's program sweeps at the heights of a carrier's pegs, clearance to keep from it in
-    mm).
+    """Return (spans that a query's program sweeps at the heights of a carrier's pegs, clearance to keep from
+    them in mm).
 
     Return None without a program.
     """
@@ -428,7 +428,7 @@ def find_swept_beside_carrier(program: Program, peg_height: float, carrier: Carr
 
     Parameters
     ----------
-    peg_height : height in mm up to which a carrier without heights of its own reaches.
+    peg_height : height in mm of a carrier without heights of its own.
     """
     low, high = carrier.heights or (0.0, peg_height)
     return find_swept_between(program, low, high) if low > 0.0 else find_swept_below(program, high)

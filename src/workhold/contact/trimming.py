@@ -1,16 +1,16 @@
-"""The places of pegs along contact features, without those at which a tool of a program comes too near.
+"""Removal of the places along contact features at which a tool of a program comes too near to a peg.
 
-Let R be the radius of a tool's cylinder. A peg of radius r on a feature is clear of a swept piece where its
-centre keeps d = R + clearance + r from the piece's path. A shoulder below the part keeps its own radius from
-what is swept there. So each piece covers an open part of a feature, and what is left is closed: what is
-exactly d away may stay.
+Let R be the radius of a tool's cylinder. A peg of radius r on a feature is clear of a swept piece if its
+centre is at least d = R + clearance + r from the piece's path. For a shoulder below the part, r is the
+shoulder's radius and the pieces are those swept there. So each piece covers an open part of a feature, and
+the rest is closed: a place exactly d away is allowed.
 
-The parts found are exact. Distance from a segment or an arc is continuous along a feature. It is d only where
-the feature meets the parallels of the segment or the circles about the arc's centre, or those of radius d
-about the path's ends. Cut there, a feature has parts on which the distance less d has one sign, that of the
-part's middle. A covered part is the union of those of all pieces. Distance changes by no more than the way
-along a feature. So a part shorter than ``LEAST_PART`` between two covered ones is marginal, within 1e-6 of
-the clearance.
+The parts are exact. The distance from a segment or an arc is continuous along a feature. It equals d only
+where the feature meets the parallels of the segment, the circles about the arc's centre, or the circles of
+radius d about the path's ends. On each part between these points, distance minus d has the sign that it has
+at the part's middle. A covered part is the union of those of all pieces. Distance changes by no more than the
+way along a feature. So a part shorter than ``LEAST_PART`` between two covered ones is marginal, within 1e-6
+of the clearance.
 
 What cutting moves take off the faces needs no rule of its own. Let a cutter's axis come within R of a point q
 of a face at a height of the pegs. A peg that touches the face within the clearance of q has its centre within
@@ -38,11 +38,11 @@ LEAST_PART = 1e-6
 
 
 def trim_to_clear_parts(segment: Segment, swept: SweptSpans, beyond: float) -> list[Segment]:
-    """Return the parts of a segment on which a peg's centre is clear of what is swept, in ascending order.
+    """Return the parts of a segment on which a peg's centre is clear of the swept space, in ascending order.
 
     Parameters
     ----------
-    beyond : clearance and radius of the peg together, in mm.
+    beyond : sum of clearance and radius of the peg, in mm.
     """
     return subtract_covered_ranges(segment, find_covered_parts(segment, swept, beyond)[0])
 
@@ -171,8 +171,8 @@ def compute_ends(rows: Array) -> tuple[Array, Array]:
 
 
 def intersect_with_offset_circles(own: Array, rows: Array, keep: Array) -> Array:
-    """Return parameters (P, 8) at which a segment meets circles of
-    kernel rows, NaN for those that it does not meet.
+    """Return parameters (P, 8) at which a segment meets circles of kernel rows, NaN for circles that it does
+    not meet.
 
     For each row there are up to four circles: two of radius ``keep`` (P,) about both ends and, for an arc,
     the two about its centre that are ``keep`` mm outside and inside the arc.

@@ -1,8 +1,8 @@
-"""Carriers, on which the contacts of a fixture stand: a lattice of holes, a clamp, or a straight wall.
+"""Carriers of the contacts of a fixture: a lattice of holes, a clamp, or a straight wall.
 
-A carrier is data, from which drawings, files and sheets take names and places. The name of a hole has the
-letter of the carrier, the letters of the column, and the row from 1, such as ``L-B3``; a name without a row
-is a whole column.
+A carrier is data; drawings, files and sheets take names and places from it. The name of a hole has the letter
+of the carrier, the letters of the column, and the row from 1, such as ``L-B3``; a name without a row is a
+whole column.
 """
 
 from __future__ import annotations
@@ -95,14 +95,14 @@ class HoleSelection:
 
 
 def parse_hole_name(name: str, carriers: Iterable[str], noun: str) -> HoleSelection:
-    """Return the hole or column that a name such as "L-B3" or "L-B" stands for; the inverse of
+    """Return the hole or column that a name such as "L-B3" or "L-B" denotes; the inverse of
     :func:`make_hole_name`.
 
     Parameters
     ----------
     name : in any mixture of capitals, with or without the hyphen.
     carriers : names of the carriers that it may be on.
-    noun : what a carrier is called in the error's message.
+    noun : word for a carrier in the error message.
 
     Raises
     ------
@@ -149,7 +149,7 @@ class Travel:
 
     Parameters
     ----------
-    direction : angle in radians from the x axis of the direction in which travel is counted.
+    direction : angle in radians, from the x axis, of the direction in which the travel grows.
     least : smallest travel in mm; -inf where unbounded.
     most : largest travel in mm; None where unbounded.
     """
@@ -166,22 +166,21 @@ class Travel:
 
 @frozen
 class Carrier:
-    """An element on which contacts stand: a lattice of holes for pegs, a clamp, a straight wall, or a flat
-    jaw.
+    """An element that carries contacts: a lattice of holes for pegs, a clamp, a straight wall, or a flat jaw.
 
     Parameters
     ----------
     name : such as "left"; its first letter begins the names of its holes.
     pitch : distances in mm between neighbouring columns and rows.
     columns, rows : numbers of columns and rows of holes; None for as many as needed.
-    peg_radius : of its pegs in mm.
-    body_radius : of the thickest part of its pegs in mm, below the workpiece.
+    peg_radius : radius of its pegs in mm.
+    body_radius : radius in mm of the thickest part of its pegs, below the workpiece.
     offset : place (x, y) in mm of the hole in column 0 and row 0, at travel 0.
     blocked : holes and columns in which no peg can stand.
-    travel : how it slides; None when it stands still.
+    travel : range and direction of its travel; None for a fixed carrier.
     noun : word for it, such as "jaw".
     peg : word for one of its pegs, such as "locator".
-    on : name of another carrier, in one of whose holes it is bolted (a clamp on a plate); None where it has
+    on : for a clamp on a plate, the name of the carrier in whose holes it is bolted; None for a carrier with
         its own holes.
     is_wall : whether it is a straight wall along x that the part lies flush against, without holes.
     flat : the flat of its pegs, which lies on straight faces; None for round pegs.
@@ -212,7 +211,7 @@ class Carrier:
     @property
     def reach(self) -> tuple[float, float] | None:
         """The x coordinates in mm of the left and the right end of a wall; None for an endless wall and for
-        anything else.
+        other carriers.
         """
         if self.width is None or self.is_jaw:
             return None
@@ -242,9 +241,7 @@ class Carrier:
 
     @property
     def elements(self) -> str:
-        """The words for what touches the workpiece, such as "locators", "left jaw pegs", "clamp" or
-        "fence".
-        """
+        """The words for its contacts, such as "locators", "left jaw pegs", "clamp" or "fence"."""
         if not self.has_lattice:
             return self.noun
         return f"{self.title} {self.peg}s" if self.letter and self.name != self.noun else f"{self.peg}s"
@@ -268,8 +265,8 @@ class Carrier:
 
     @property
     def stands_on(self) -> str:
-        """The name of the carrier in whose holes its contacts stand: its own name, or that of the carrier it
-        is bolted to.
+        """The name of the carrier whose holes have its contacts: its own name, or that of the carrier it is
+        bolted to.
         """
         return self.on or self.name
 
@@ -280,7 +277,7 @@ class Carrier:
 
     @property
     def is_along_x(self) -> bool:
-        """Whether it slides along x; False if it stands still."""
+        """Whether the carrier slides along x; False for a fixed one."""
         return self.travel is not None and self.travel.unit[0] != 0.0
 
     @property
@@ -292,9 +289,7 @@ class Carrier:
 
     @property
     def direction(self) -> str:
-        """The direction in which a clamp pushes, such as "-x"; for other carriers meaningless (the last word
-        of the name).
-        """
+        """The direction in which a clamp pushes, such as "-x"; meaningless for other carriers."""
         return self.name.rpartition(" ")[2]
 
     @property
@@ -304,8 +299,8 @@ class Carrier:
 
     @property
     def pushers(self) -> str:
-        """The word for what presses on the part when the carrier moves: "jaws" for a jaw, "clamp" for a
-        clamp.
+        """The word for the elements that press on the part when the carrier moves: "jaws" for a jaw, "clamp"
+        for a clamp.
         """
         return f"{self.noun}s" if self.has_lattice else self.noun
 
@@ -322,7 +317,7 @@ class Carrier:
 
     @property
     def has_a_hole(self) -> bool:
-        """Whether what stands on it is in a known hole.
+        """Whether its contacts are in known holes.
 
         False for a clamp without a largest travel: only the row or column along which it pushes is known.
         """
@@ -330,12 +325,12 @@ class Carrier:
 
     @property
     def has_body_behind(self) -> bool:
-        """Whether it is a clamp whose body reaches from its tip back to the hole in which it is bolted."""
+        """Whether it is a clamp whose body extends from its tip back to the hole in which it is bolted."""
         return self.contact is CLAMP_TIP and self.has_a_hole
 
     @property
     def counted_axes(self) -> tuple[bool, bool]:
-        """Whether (1) a column and (2) a row say where a contact on it is.
+        """Two flags: whether a column and whether a row locates a contact on it.
 
         A clamp without a hole has only one of them: the row or column along which it pushes. A wall has
         neither.
@@ -346,10 +341,10 @@ class Carrier:
 
     @property
     def file_entry(self) -> tuple[str, str]:
-        """The key and the value with which files say on which carrier a contact is, such as ("jaw", "left").
+        """The key and the value by which files name the carrier of a contact, such as ("jaw", "left").
 
-        That is the carrier's noun and name where a toolkit has several lattices, else "role" and the
-        contact's role. A single lattice that slides has its noun as its role.
+        For a toolkit with several lattices these are the carrier's noun and name, else "role" and the
+        contact's role. The role of a single sliding lattice is its noun.
         """
         if self.has_lattice and self.letter and self.name != self.noun:
             return self.noun, self.name

@@ -37,8 +37,7 @@ class ContactKind:
     ----------
     name : in a few words.
     role : whether it locates or clamps the part.
-    is_placed : True for an element that is put into a place of its own; False for an end of a contact with a
-        wall.
+    is_placed : True for an element that is placed by itself; False for an end of a contact with a wall.
     is_turned : whether the element's angle in its hole matters.
     """
 
@@ -64,14 +63,14 @@ TOWARDS = {"-x": "to the left", "+x": "to the right", "-y": "downward", "+y": "u
 
 @frozen
 class Arrangement:
-    """How many contacts of a fixture stand on each carrier.
+    """The number of contacts of a fixture on each carrier.
 
     Parameters
     ----------
     name : such as "I", as in the paper by Brost and Goldberg.
     pegs : the number of contacts on each carrier, in the order of the carriers.
-    direction : in which the moving carriers clamp, such as "-x" or "-x -y"; None where a toolkit has only one
-        direction.
+    direction : directions in which the moving carriers clamp, such as "-x" or "-x -y"; None if a toolkit has
+        only one direction.
     """
 
     name: str
@@ -131,7 +130,7 @@ class Symmetry:
 
     Parameters
     ----------
-    half_turns : by how many turns of 180 degrees the toolkit is rotated.
+    half_turns : number of turns by 180 degrees of the rotation.
     carriers : for each carrier, the index of the carrier onto which it is carried.
     """
 

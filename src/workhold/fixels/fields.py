@@ -257,12 +257,12 @@ WALL_OFFSET = ToolkitField(
 
 
 def make_heights_field(carrier: str, whose: str, belongs_to: str) -> ToolkitField:
-    """Return the field ``<carrier>_heights``: the lower and the upper end of what stands on a carrier.
+    """Return the field ``<carrier>_heights``: the lower and the upper end of the elements on a carrier.
 
     Parameters
     ----------
     carrier : first part of the field's name, such as "clamp".
-    whose : words for what has these heights, such as "the clamp's tip".
+    whose : words for the element with these heights, such as "the clamp's tip".
     belongs_to : the part of a toolkit that the field describes.
     """
     return ToolkitField(

@@ -40,7 +40,8 @@ __all__ = ["FlatJaw"]
 
 @make_class_from_table
 class FlatJaw(Toolkit):
-    """A vise whose fixed jaw is flat, along x at y = 0, with a plate of pegs on the jaw that moves, along y.
+    """A vise whose fixed jaw is flat, along x at y = 0, with a plate of pegs on the moving jaw, which slides
+    along y.
 
     The part lies flush against the flat jaw, above it, on a hull edge: a straight piece of the boundary of
     its convex hull. Two pegs in holes of one lattice press it down as the jaw closes.
@@ -199,8 +200,8 @@ class FlatJaw(Toolkit):
 
     @cached_property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The flat jaw, and the jaw that moves, whose travel is the distance from the flat jaw to its first
-        row of holes.
+        """The flat jaw and the moving jaw. The travel is the distance from the flat jaw to the moving jaw's
+        first row of holes.
         """
         travel = Travel(pi / 2, self.min_gap, self.max_opening)
         jaw = make_lattice_carrier(self, "jaw", travel=travel, noun="jaw", heights=self.jaw_heights)
@@ -215,5 +216,5 @@ class FlatJaw(Toolkit):
         return Datum.from_wall(wall, jaw)
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield the change to half the pitch, where the pegs are thin enough for it."""
+        """Yield the change to half the pitch, if the pegs are thin enough for it."""
         yield from suggest_half_pitch(self)

@@ -1,7 +1,7 @@
 """Two flat jaws between which a part is held by friction, as data for listing, verification and drawing.
 
-The fixed jaw stands along x at y = 0, its left end at x = 0; the jaw that moves closes along -y. The part lies above
-the fixed jaw, on parallels, and its lower side is at z = 0.
+The fixed jaw stands along x at y = 0, its left end at x = 0; the moving jaw closes along -y. The part lies
+above the fixed jaw, on parallels, and its lower side is at z = 0.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ class JawPair:
     ----------
     width : of both jaws.
     height : of the jaws above the vise's bed; None for any height.
-    thickness : of each jaw at its top, away from the part; None for unbounded.
+    thickness : thickness of each jaw at its top, measured away from the part; None for unbounded.
     max_opening : the largest distance between the jaws; None for no limit.
     parallels : heights of the parallels that can be used; (0,) where the part lies on the bed.
     least_grip : the least height over which both jaws must grip the part.
-    stops : ends of the jaws at which a work stop can be, "left" or "right", each making its own fixtures;
+    stops : ends of the jaws at which a work stop can be, "left" or "right"; each gives separate fixtures;
         None for no stop.
     stop_offset : how far inward from the end of the jaws the stop touches the part.
     max_force : rated force in N; None where not known.
@@ -54,9 +54,9 @@ class JawPair:
     stop_width: float
 
     def compute_top(self, parallels: float) -> float:
-        """Return how far in mm the top of the jaws lies above the lower side of a part.
+        """Return the height in mm of the jaws' top above the lower side of a part.
 
-        The part stands on parallels that are ``parallels`` mm high. The result is inf where the jaws may have
+        The part stands on parallels that are ``parallels`` mm high. The result is inf if the jaws may have
         any height.
         """
         return inf if self.height is None else self.height - parallels
@@ -68,10 +68,10 @@ class JawPair:
         return f"jaws up to {round(self.compute_top(parallels), 6):g} mm"
 
     def compute_parallel_thickness(self, opening: float) -> float:
-        """Return how thick each parallel is between jaws that stand ``opening`` mm apart, in mm.
+        """Return the thickness in mm of each parallel between jaws that are ``opening`` mm apart.
 
-        Where it is not known it is taken to be 8 mm, and at most a fifth of the opening. Two parallels are
-        never thicker than the opening.
+        An unknown thickness is taken as 8 mm, but at most a fifth of the opening. Two parallels are never
+        thicker than the opening.
         """
         if self.parallel_thickness is None:
             return min(USUAL_PARALLEL, PARALLEL_SHARE * opening)

@@ -72,7 +72,7 @@ def convert_whole_number(value: Any, name: str = "a count") -> Any:
 
 
 def convert_optional_length(value: float | None, name: str = "a length") -> float:
-    """Return a length as a float, with two stand-ins for values that are treated later.
+    """Return a length as a float; None and NaN get placeholders that are handled later.
 
     None becomes NaN, which is later replaced by the default; NaN becomes inf, which is later refused.
     """
@@ -223,7 +223,7 @@ def convert_directions(value: str | Iterable[Any] | None) -> tuple[Any, ...]:
     Raises
     ------
     InputError
-        For unknown directions, an empty list, and anything but names or pairs of names.
+        For unknown directions, an empty list, and values other than names or pairs of names.
     """
     if value is None:
         return ()
@@ -406,7 +406,7 @@ def make_wall_carrier(toolkit: Any, noun: str, width: float | None = None) -> Ca
 
 
 def suggest_half_pitch(toolkit: Any) -> Iterator[ToolkitChange]:
-    """Yield one change of a toolkit to half the pitch; nothing where the pegs would be too thick for it.
+    """Yield one change of a toolkit to half the pitch, if the pegs are thin enough for it.
 
     The numbers of columns and rows grow so that all old holes remain.
     """

@@ -29,18 +29,18 @@ THIN_PARALLEL = 3.0
 class PlainVise(Toolkit):
     """A vise with two flat, parallel jaws: the part stands on parallels and is held by friction.
 
-    The fixed jaw stands along x at y = 0, the part above it on a hull edge, a straight piece of the boundary of the
-    part's convex hull. The jaw that moves closes along -y. Each hull edge, work stop and height of parallels makes
-    one fixture.
+    The fixed jaw stands along x at y = 0, the part above it on a hull edge, a straight piece of the boundary
+    of the part's convex hull. The moving jaw closes along -y. Each hull edge, work stop and height of
+    parallels makes one fixture.
 
     Parameters
     ----------
-    jaw_width : of both jaws in mm.
-    jaw_height : how high the jaws stand above the vise's bed, in mm; None for any height.
+    jaw_width : width of both jaws in mm.
+    jaw_height : height of the jaws above the vise's bed in mm; None for any height.
     max_opening : the largest distance between the jaws in mm, or None for no limit.
     parallels : heights in mm of the parallels that can be used; empty where the part lies on the bed.
     stop : "left", "right" or "both": the ends of the jaws at which a work stop can be; None without one.
-    stop_offset : how far inward from the end of the jaws the stop touches the part, in mm.
+    stop_offset : distance in mm, inward from the end of the jaws, at which the stop touches the part.
     least_grip : the least height in mm that both jaws must grip.
     max_force : rated clamping force in N; None where not known.
     jaw_thickness : how thick the jaws are, for the tools of a program, in mm; None for any thickness.

@@ -168,7 +168,7 @@ class Plate(Toolkit):
         Raises
         ------
         InputError
-            For pairs where there is one clamp.
+            For pairs although there is one clamp.
         """
         are_names = all(isinstance(one, str) for one in self.directions)
         if not self.is_paired and not are_names:
@@ -217,7 +217,7 @@ class Plate(Toolkit):
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:  # type: ignore[override]
-        """One arrangement for each of ``pushes``: how many contacts stand on the plate and on each clamp."""
+        """One arrangement for each of ``pushes``: the numbers of contacts on the plate and on each clamp."""
         name, every = self.names[self.is_paired], self.clamp_directions
         return tuple(
             Arrangement(name, (*self.locating, *map(push.count, every)), " ".join(push))
@@ -257,9 +257,7 @@ class Plate(Toolkit):
 
     @property
     def ways(self) -> tuple[Plate, ...]:
-        """Toolkits with one clamp and otherwise the same fields, one for each direction in which a clamp
-        pushes.
-        """
+        """Toolkits with one clamp and otherwise the same fields, one for each direction of the clamp."""
         return tuple(
             self.with_fields({fields.CLAMPS.name: 1, fields.DIRECTION.name: (name,)})
             for name in self.clamp_directions

@@ -26,12 +26,12 @@ class SetupWords:
 
     Parameters
     ----------
-    standing : heading of the places of the pegs, such as "Locators".
+    standing : heading of the list of the pegs' places, such as "Locators".
     put : the first step, a sentence.
-    touching : how the part lies where it is held, in two words.
-    located_by : what a clamp pushes the part against, such as "Three locators".
-    against : where the part lies before a clamp pushes it.
-    resting : where the part lies in a false seat that looks like the right one.
+    touching : position of the part when it is held, in two words.
+    located_by : the elements against which a clamp pushes the part, such as "Three locators".
+    against : position of the part before a clamp pushes it.
+    resting : position of the part in a false seat that looks like the right one.
     """
 
     standing: str
@@ -68,12 +68,11 @@ class Datum:
     point : the origin in words, such as "the centre of hole A1".
     full : the origin in words with its carrier, such as "the plate's hole A1".
     mark : label beside the origin on a plan.
-    x, y : words for what x and y are measured from, such as "hole A1".
+    x, y : words for the origins of x and of y, such as "hole A1".
     lines : words for the column and the row through the origin; for a wall, the wall instead of the row.
-    rows_from : words for where rows are counted from, such as "below".
-    substitute : words for what takes the origin's place when the whole set-up is moved to other holes.
-    edge : distance in mm from the wall to the centres of row 1; None without a wall, or where the plate
-        slides.
+    rows_from : words for the side from which rows are counted, such as "below".
+    substitute : words for the new origin when the whole set-up is moved to other holes.
+    edge : distance in mm from the wall to the centres of row 1; None without a wall, or if the plate slides.
     """
 
     name: str
@@ -133,11 +132,11 @@ class Datum:
 
     @property
     def origin_words(self) -> str:
-        """Words for what x and y are measured from, such as "hole A1" or "column A and the fence"."""
+        """Words for the origin of x and y, such as "hole A1" or "column A and the fence"."""
         return self.x if self.is_hole else f"{self.x} and {self.y}"
 
     def describe_peg_centres(self, pegs: str) -> str:
-        """Return a note for a table of peg centres that says where x and y are measured from.
+        """Return a note for a table of peg centres that names the origin of x and y.
 
         ``pegs`` is the word for the pegs.
         """

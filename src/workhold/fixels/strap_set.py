@@ -19,12 +19,12 @@ class StrapSet:
 
     Parameters
     ----------
-    count : how many straps press on the part, 1 to 4.
+    count : number of straps that press on the part, 1 to 4.
     tip_radius : radius of a strap's round tip.
     reach : the least and the greatest distance of a tip from the middle of its bolt's hole.
-    max_force : the force in N that a strap is rated for; None where not known.
-    bolts : the lattice of holes for bolts; the plate itself where bolts stand in the dowels' holes.
-    over : what lies under the part below the tips: "plate" or "supports".
+    max_force : rated force of a strap in N; None if not known.
+    bolts : the lattice of holes for bolts; the plate itself if bolts use the dowel holes.
+    over : the rest of the part below the tips: "plate" or "supports".
     standout : height of a strap, with nut and stud, above the face that it presses on.
     """
 
@@ -43,5 +43,5 @@ class StrapSet:
 
     @property
     def is_on_dowel_holes(self) -> bool:
-        """Whether bolts stand in the same holes as dowels."""
+        """Whether bolts use the same holes as dowels."""
         return self.bolts.peg != "bolt"

@@ -42,13 +42,13 @@ class StrapPlate(Toolkit):
     Parameters
     ----------
     pitch : distance between neighbouring columns and rows in mm, one number or (x, y).
-    peg_radius : of the locators in mm, above 0; bolts are as thick.
+    peg_radius : radius of the locators in mm, above 0; bolts have the same radius.
     columns, rows : of holes, or None for as many as needed.
-    straps : how many press the part down, 1 to 4.
-    tip_radius : of a strap's round tip in mm.
-    reach : least and most in mm from the middle of a bolt's hole to the tip of its strap.
-    strap_height : how high a strap stands above the face that it presses on, with nut and stud, for the tools of a
-        program; None for six radii of its tip.
+    straps : number of straps that press the part down, 1 to 4.
+    tip_radius : radius of a strap's round tip in mm.
+    reach : least and greatest distance in mm from the middle of a bolt's hole to the tip of its strap.
+    strap_height : height in mm of a strap, with nut and stud, above the face that it presses on, for
+        collisions with tools; None for six radii of its tip.
     over : "plate" where the part lies on the plate, with its foot under each tip; "supports" where it lies on
         three supports, with each tip over one of them.
     bolt_pitch : distance between holes for bolts in mm, one number or (x, y); the pitch must be a whole
@@ -220,15 +220,15 @@ class StrapPlate(Toolkit):
 
     @property
     def moving(self) -> Carrier:
-        """A stand-in for the carrier that moves, with the words for a strap; it has no travel, since a strap
-        moves no part.
+        """A substitute for the moving carrier, with the words for a strap; it has no travel, since a strap
+        does not move the part.
         """
         return evolve(self.carriers[0], name="strap", noun="strap", peg="strap")
 
     @property
     def bolts(self) -> Carrier:
-        """The lattice of holes for bolts, no larger than that of the dowels; the plate itself where bolts
-        have no own holes.
+        """The lattice of holes for bolts, no larger than that of the dowels; the plate itself if bolts have
+        no separate holes.
         """
         plate = self.carriers[0]
         if self.bolt_pitch is None:
@@ -251,17 +251,13 @@ class StrapPlate(Toolkit):
 
     @property
     def half_turned(self) -> tuple[int, ...] | None:
-        """(0,) where half a turn carries the plate onto itself; None where it would move the holes for
-        bolts.
-        """
+        """(0,) if half a turn maps the plate onto itself; None if it would move the holes for bolts."""
         if self.bolt_pitch is None:
             return (0,)
         twice = [2 * offset / own for offset, own in zip(self.bolt_offset, self.bolt_pitch, strict=True)]
         return (0,) if all(abs(one - round(one)) <= ROUNDING for one in twice) else None
 
     def list_further_changes(self, unit: Unit) -> Iterator[ToolkitChange]:
-        """Yield the change to half the pitch, where the pegs are thin enough; nothing where bolts have their
-        own holes.
-        """
+        """Yield the change to half the pitch, if the pegs are thin enough and bolts have no separate holes."""
         if self.bolt_pitch is None:
             yield from suggest_half_pitch(self)

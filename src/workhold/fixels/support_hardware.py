@@ -213,17 +213,17 @@ class SupportPads:
 
 @frozen(kw_only=True)
 class TopClamp:
-    """The clamp that an owner has for pressing on the part from above; lengths in mm.
+    """The owner's clamp that presses on the part from above; lengths in mm.
 
     None stands for the program's usual value.
 
     Parameters
     ----------
-    tip_radius : of its round tip.
+    tip_radius : radius of its round tip.
     inside : smallest distance from its tip's centre to each side of the supports' triangle.
     reach : rings (x, y, least, most) in the toolkit's frame in which its tip can stand; None for anywhere.
-    tip_margin : smallest distance of its tip from the border of the face on which it stands.
-    head_radius : radius within which nothing of the part may rise above that face.
+    tip_margin : smallest distance of its tip from the border of the face on which it presses.
+    head_radius : radius within which no part of the workpiece may rise above that face.
 
     Raises
     ------

@@ -42,7 +42,7 @@ class LiftedLimit:
     Parameters
     ----------
     rule : the limit in a few words, such as "rows of holes".
-    bounds : what is limited: the pegs' bodies, the travel, how far a wall reaches, or the holes.
+    bounds : the limited property: the pegs' bodies, the travel, the extent of a wall, or the holes.
     words : phrase for the toolkit without the limit, such as "with as many rows as needed".
     """
 
@@ -53,18 +53,18 @@ class LiftedLimit:
 
 @frozen
 class ToolkitField(Declaration):
-    """A field of a toolkit, with what :class:`workhold.asking.declaring.Declaration` has and more.
+    """A field of a toolkit: a :class:`workhold.asking.declaring.Declaration` with further data.
 
     Parameters
     ----------
-    entry : advice on what to write in a toolkit's file; empty where the field's form says enough.
+    entry : advice on writing the field in a toolkit's file; empty if the field's form explains itself.
     missing : words for the field in the message that it is missing, such as "distance between holes".
     belongs_to : the part of a toolkit that the field describes; toolkits without this field lack that part.
-    figure : name of the field in a list of a toolkit's figures; empty where it is shown elsewhere.
+    figure : name of the field in a list of a toolkit's figures; empty if it is shown elsewhere.
     unset : text in that list for a value of None; empty to leave fields with their default value out.
     follows : name of the field whose value is the default of this one; of a pitch, its x counts. A field with
         this default is left out of the list.
-    is_always_shown : whether it is in the list even with that default.
+    is_always_shown : whether it is listed even with that default.
     at_least : name of the field whose value is the minimum of this one.
     below : message for a value below that minimum, with "{value}" and "{least}".
     allowed : the counts that are allowed; empty for all.
@@ -93,7 +93,7 @@ class ToolkitField(Declaration):
 
     @property
     def is_silent(self) -> bool:
-        """Whether files say nothing of the field where its value is None."""
+        """Whether files omit the field if its value is None."""
         return self.form in SILENT or self.is_optional_key
 
     def relabel(self, *labels: PageLabel, **changes: Any) -> ToolkitField:

@@ -1,18 +1,17 @@
-"""Toolkits: carriers of pegs, the places where pegs may stand, what moves, and when that clamps.
+"""Toolkits: carriers of pegs, their holes, the moving carriers, and the direction in which these clamp.
 
-A toolkit is data. Whatever searches, proves, lists, draws and writes fixtures takes the data below from the
-toolkit and does not depend on its kind. A new kind is a small module with these data, such as
-``fixels.vise``.
+A toolkit is data. All code that searches, proves, lists, draws and writes fixtures uses the data below and
+does not depend on the kind of toolkit. A new kind is a small module with these data, such as ``fixels.vise``.
 
 Glossary
 --------
-carrier : what pegs stand on, a lattice of holes; it stands still or slides along a line. A vise's jaws are
-    two carriers.
-travel : how far a carrier has slid along its direction, in mm; of a vise the jaw separation.
-arrangement : how many pegs stand on each carrier. The paper's Type I is two and two, its Type II three and
+carrier : a lattice of holes that carries pegs; it is fixed or slides along a line. A vise's jaws are two
+    carriers.
+travel : the distance in mm that a carrier has slid along its direction; for a vise the jaw separation.
+arrangement : the number of pegs on each carrier. The paper's Type I is two and two, its Type II three and
     one.
-gap rule : the smallest distance along the direction of travel from a peg of the carrier that stands still to
-    one of the carrier that moves.
+gap rule : the smallest distance along the direction of travel from a peg of the fixed carrier to a peg of the
+    moving one.
 """
 
 from __future__ import annotations
@@ -55,20 +54,20 @@ LIFTED = ("bodies", "travel", "reach", "holes")
 
 @frozen
 class ToolkitWording:
-    """Phrases for messages about a toolkit that holds nothing.
+    """Phrases for messages about a toolkit without fixtures.
 
     Parameters
     ----------
     two : the two pegs of a chord, such as "two pegs of one jaw".
     four : all contacts, such as "four pegs of the two jaws".
-    inside : where the part lies, such as "in this vise".
-    within : what a fixture must fit, such as "the jaws as asked: with the rows given".
-    rules : what four pegs that touch must still do, such as "keeps the smallest gap, closes and clamps".
-    backwards : when four contacts that close but do not clamp would hold.
+    inside : place of the part, such as "in this vise".
+    within : the limits that a fixture must fit, such as "the jaws as asked: with the rows given".
+    rules : the further conditions on four touching pegs, such as "keeps the smallest gap, closes and clamps".
+    backwards : the case in which four contacts that close but do not clamp would hold.
     holes : the rule about holes, such as "holes that the jaws do not have".
     sets : the combinations that are counted, in the plural.
     clear : the last rule for fixtures beside a wall.
-    reasons : why it holds nothing, from the first stage to the last; empty for the usual reasons
+    reasons : reasons why there is no fixture, from the first stage to the last; empty for the usual reasons
         (``model.search_report``).
     """
 
@@ -86,8 +85,8 @@ class ToolkitWording:
 
 @frozen
 class ToolkitChange:
-    """A change of a toolkit to try where it holds no part: ``words`` is a phrase, ``fields`` are new values
-    by field name.
+    """A change to try for a toolkit that cannot hold the part: ``words`` is a phrase, ``fields`` are new
+    values by field name.
     """
 
     words: str
@@ -101,7 +100,7 @@ class ToolkitLimit:
     Parameters
     ----------
     rule : the limit in a few words, such as "rows of holes".
-    bounds : what is limited: the pegs' bodies, the travel, how far a wall reaches, or the holes.
+    bounds : the limited property: the pegs' bodies, the travel, the extent of a wall, or the holes.
     lifted : the change that lifts it.
     """
 
@@ -127,12 +126,11 @@ class Toolkit:
         follows.
     law : key in ``batch.durations`` of the law for the duration of a search.
     arrangements : the possible numbers of contacts on the carriers.
-    clamping : 1 where the moving carrier clamps as its travel shrinks (a vise that closes), -1 where it
-        clamps as its travel grows.
+    clamping : 1 if the moving carrier clamps as its travel shrinks (a vise that closes), -1 if it clamps as
+        its travel grows.
     symmetries : rotations, besides the identity, that carry the toolkit onto itself.
-    carriers : those that stand still come first; at most one moves while a pose is sought.
-    gap : smallest distance in mm along the travel between pegs that stand still and pegs that move; None for
-        no such rule.
+    carriers : fixed carriers come first; at most one moves while a pose is computed.
+    gap : smallest distance in mm along the travel between fixed and moving pegs; None for no such rule.
     wording : phrases for messages where the toolkit holds nothing.
     setup_words : texts about setting it up, on sheets, pictures and pages.
     page : texts for the web page.
@@ -167,7 +165,7 @@ class Toolkit:
 
     @property
     def carriers(self) -> tuple[Carrier, ...]:
-        """The carriers, those that stand still first."""
+        """The carriers, the fixed ones first."""
         raise NotImplementedError
 
     @property
@@ -258,7 +256,7 @@ class Toolkit:
 
     @property
     def holds_by_friction(self) -> bool:
-        """Whether friction keeps the part in its place, between flat jaws or under straps."""
+        """Whether friction holds the part, between flat jaws or under straps."""
         return self.flat_jaws is not None or self.strap_set is not None
 
     @property
@@ -287,16 +285,12 @@ class Toolkit:
 
     @property
     def gap(self) -> float | None:
-        """The smallest distance in mm along the travel between pegs that stand still and that move; None for
-        no such rule.
-        """
+        """The smallest distance in mm along the travel between fixed and moving pegs; None for no such rule."""
         return None
 
     @property
     def limits(self) -> tuple[ToolkitLimit, ...]:
-        """The limits that its fields set and that could be lifted, in the order in which a person would lift
-        them.
-        """
+        """The limits set by its fields that could be lifted, in the order in which a person would lift them."""
         limits = []
         for row in self.table.fields:
             free = self.find_followed_length(row) if row.follows else row.default
@@ -380,12 +374,12 @@ class Toolkit:
 
     @property
     def wall(self) -> Carrier | None:
-        """The wall that the part lies flush against; None where there is none."""
+        """The wall that the part lies flush against; None if there is none."""
         return next((carrier for carrier in self.carriers if carrier.is_wall), None)
 
     @property
     def wall_with_ends(self) -> Carrier | None:
-        """The wall, where it has ends; None where it is endless or there is none."""
+        """The wall, if it has ends; None if it is endless or there is none."""
         return next((carrier for carrier in self.carriers if carrier.reach is not None), None)
 
     @property
@@ -436,7 +430,7 @@ class Toolkit:
         Raises
         ------
         StopIteration
-            Where there is none.
+            If there is none.
         """
         return next(carrier for carrier in self.carriers if carrier.name == name)
 

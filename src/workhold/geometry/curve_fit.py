@@ -3,15 +3,14 @@ others.
 
 Glossary
 --------
-disguise : a curve that is nowhere farther than a hair from a line or an arc, or the cubic by which programs
-    write an arc.
-break : a place of a curve where its direction or its curvature jumps: where one line or arc of a disguise may
-    end.
+disguise : a curve that is within rounding of a line or an arc, or the cubic with which programs write an arc.
+break : a place of a curve where its direction or its curvature jumps. The lines and arcs of a disguise end at
+    breaks only.
 stretch : a part of a curve from one break to the next.
 biarc : two arcs that leave two points in given directions and meet in a common one (K. M. Bolton, "Biarc
     curves", Computer-Aided Design 7 (1975) 89-92; D. S. Meek and D. J. Walton, "Approximation of discrete
     data by G1 arc splines", Computer-Aided Design 24 (1992) 301-306).
-joint : where the two arcs of a biarc meet.
+joint : the point in which the two arcs of a biarc meet.
 """
 
 from __future__ import annotations
@@ -50,12 +49,12 @@ class FittedCurve:
 
     Parameters
     ----------
-    points : the N + 1 ends (x, y) of the chain's N segments in mm; the last equals the first where the curve
-        is closed.
+    points : the N + 1 ends (x, y) of the chain's N segments in mm; the last equals the first if the curve is
+        closed.
     bulges : for each segment its bulge, tan(sweep / 4); 0 for a line.
     departure : upper bound in mm of the distance of any point of the chain from the curve, and of the curve
         from the chain.
-    is_disguise : True where the curve itself consisted of lines and arcs within rounding, False where biarcs
+    is_disguise : True if the curve itself consisted of lines and arcs within rounding, False if biarcs
         approximate it.
     """
 
@@ -106,8 +105,8 @@ def fit_longest_biarc(
     """Return (1) the longest biarc that starts at the parameter ``place`` of a smooth curve, (2) the
     parameter of its end.
 
-    ``step`` is how far in parameters to try first. Where the biarc would be smaller than the tolerance (mm),
-    a line may be returned instead.
+    ``step`` is the first length to try, in the parameter. If the biarc would be smaller than the tolerance
+    (mm), a line may be returned instead.
     """
     total = float(len(pieces))
     room = total - place
@@ -249,7 +248,7 @@ def find_crossing(pieces: Pieces, first: float, last: float, joint: Point, acros
 def find_corners(pieces: Pieces) -> list[int]:
     """Return the indices of the pieces at whose start the curve has a corner (never 0).
 
-    At a corner a piece starts in another direction than that in which the piece before it ends.
+    At a corner a piece starts in another direction than the one in which the previous piece ends.
     """
     leaving, entering = compute_end_directions(pieces)
     turned = np.hypot(*(entering[:-1] - leaving[1:]).T) > CORNER
@@ -319,9 +318,8 @@ def find_disguised_runs(
     in order.
 
     ``first`` and ``end`` are the indices of the first piece and of the piece after the last. ``places`` are
-    the indices at which parts may start, and finally the number of pieces. Parts are as long as possible.
-    Between two neighbouring ``places`` where the curve is neither a line nor an arc, the fitted curve is
-    None.
+    the indices at which parts may start, and finally the number of pieces. Parts are as long as possible. The
+    fitted curve is None between two neighbouring ``places`` if the curve there is neither a line nor an arc.
     """
     found: list[tuple[int, int, FittedCurve | None]] = []
     k = 0
@@ -425,7 +423,7 @@ def allow_for_written_arcs(pieces: Pieces, arc: Arc) -> float:
     """Return the tolerance in mm within which cubic curves count as ``arc``; 0 for curves that are not cubic
     polynomials.
 
-    Programs write an arc as a cubic whose handles are 4/3 tan(sweep / 4) radii long. For a quarter turn this
+    Programs write an arc as a cubic with handles of length 4/3 tan(sweep / 4) radii. For a quarter turn this
     cubic departs from the arc by 2.73e-4 radii; for smaller arcs the departure falls with the sixth power of
     the sweep (M. Goldapp, "Approximation of circular arcs by cubic polynomials", Computer Aided Geometric
     Design 8 (1991) 227-238).

@@ -1,15 +1,16 @@
 """Convex hulls: of points, and the hull edges of an outline, on which it can lie flush.
 
 Hull edges are the straight pieces of the boundary of an outline's convex hull. Each is a common tangent of
-two corners, of a corner and a convex arc, or of two convex arcs, and has everything on its left. All pairs
-are examined, so none is missed. A tangent that lies on another one, within the rounding of a drawing, is the
-same edge, which may run over several faces and the gaps between them.
+two corners, of a corner and a convex arc, or of two convex arcs, and the whole outline is on its left. All
+pairs are examined, so none is missed. A tangent that lies on another one, within the rounding of a drawing,
+is the same edge, which may run over several faces and the gaps between them.
 
 Glossary
 --------
-support : how far an outline reaches in a direction, the largest scalar product of a point with a unit vector.
-piece : a joint of two faces, or a convex arc, which supports in the directions of its normals.
-end : where a hull edge ends: at a corner, at the end of a face that lies along it, or where an arc leaves it.
+support : the extent of an outline in a direction: the largest scalar product of a point with the unit vector.
+piece : a joint of two faces, or a convex arc; it is outermost in the directions of its normals.
+end : an end of a hull edge: a corner, the end of a face that lies along it, or the point where an arc leaves
+    it.
 """
 
 from __future__ import annotations
@@ -77,9 +78,9 @@ class HullEnd:
     Parameters
     ----------
     point : in mm.
-    faces : indices of the faces that meet there: one where a face lies along the edge or the end is on an
-        arc, two at a corner.
-    center, radius : of the arc in mm; at a corner, ``point`` and 0.
+    faces : indices of the faces that meet there: two at a corner, one if a face lies along the edge or the
+        end is on an arc.
+    center, radius : centre and radius of the arc in mm; at a corner, ``point`` and 0.
     along : whether a face lies along the edge there.
     """
 
@@ -216,9 +217,9 @@ def find_hull_edges(segments: Sequence[Segment], counts: Sequence[int] | None = 
 
     Parameters
     ----------
-    segments : the outer loop's faces, a closed chain with material on the left; of several pieces one chain
-        after the other.
-    counts : how many segments each chain has; None for one chain.
+    segments : the outer loop's faces, a closed chain with material on the left; for a part in several pieces
+        one chain after the other.
+    counts : number of segments of each chain; None for one chain.
 
     Examples
     --------
@@ -255,7 +256,7 @@ class HullTouch:
 
     Parameters
     ----------
-    low, high : where the stretch begins and ends, in mm along the edge from its start; equal for a point.
+    low, high : beginning and end of the stretch, in mm along the edge from its start; equal for a point.
     faces : index of the face that lies along the edge, or of the arc; both indices for a corner.
     """
 
@@ -267,7 +268,7 @@ class HullTouch:
 def find_touches_along(
     edge: HullEdge, segments: Sequence[Segment], counts: Sequence[int] | None = None
 ) -> tuple[HullTouch, ...]:
-    """Return where an outline touches the line of a hull edge: first the stretches, then the points.
+    """Return the stretches, then the points, in which an outline touches the line of a hull edge.
 
     Stretches and points are each in order along the edge.
 

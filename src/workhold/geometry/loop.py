@@ -143,7 +143,7 @@ def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.f
 
     Returns
     -------
-    (N, 3) array, read-only. Bulges below ``STRAIGHT``, and those of arcs that rise less than ``READING`` mm
+    (N, 3) array, read-only. Bulges below ``STRAIGHT``, and bulges of arcs that rise less than ``READING`` mm
     from their chords, are 0.
 
     Raises
@@ -438,7 +438,7 @@ class Face:
 
 
 def merge_run(run: Sequence[Segment]) -> Segment:
-    """Return one segment in place of neighbouring segments that lie on one line or circle."""
+    """Return one segment that replaces neighbouring segments on one line or circle."""
     first = run[0]
     if len(run) == 1:
         return first

@@ -39,8 +39,8 @@ Array = NDArray[np.float64]
 
 
 def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tuple[Array, int]:
-    """Return the vertices of a loop in which each chain of arcs within ``READING`` mm of one circle lies on
-    that circle.
+    """Return a loop's vertices after moving each chain of arcs within ``READING`` mm of one circle onto that
+    circle.
 
     The first and last point of a chain stay where they are, unless the whole loop is one chain. A second call
     changes nothing more.
@@ -53,7 +53,7 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
     Returns
     -------
     tuple
-        The vertices (N, 3), read-only, and how many arcs were changed.
+        The vertices (N, 3), read-only, and the number of changed arcs.
     """
     out, changed = np.array(vertices), 0
     for chain in find_arc_chains(segments):
@@ -102,7 +102,7 @@ def find_arc_chains(segments: Sequence[Segment]) -> list[list[int]]:
 def fit_common_circle(arcs: Sequence[Arc], whole: bool) -> tuple[Point, float] | None:
     """Return centre and radius in mm of a circle that is within ``READING`` mm of all arcs of a chain.
 
-    None where no circle is.
+    None if there is no such circle.
 
     The circle goes through both ends of the chain, unless ``whole`` says that the chain is a closed loop. It
     is the least-squares circle through the arcs' ends and middles (I. Kasa, "A circle fitting procedure and
@@ -176,7 +176,7 @@ class MergedLoop:
     ----------
     vertices : (N, 3) array of x, y in mm and bulge.
     firsts : for each segment, the index of the first of the original segments that it replaces.
-    merged : how many segments fewer the loop has than the original.
+    merged : number of segments that the loop has less than the original.
     departure : upper bound in mm of the distance of any point of either loop from the other loop.
     """
 
@@ -219,7 +219,7 @@ def merge_chords(
     ----------
     vertices : (N, 3) array of a loop.
     fit : larger tolerance in mm within which chords are replaced by an arc; None to use ``DISGUISE``.
-    kept : for each segment whether it stays as it is; empty where all may be replaced.
+    kept : for each segment whether it is kept unchanged; empty if all may be replaced.
     interrupt : called before every run; may raise an error to stop.
     """
     pieces = [
@@ -277,7 +277,7 @@ class ChordedArcs:
 def find_chorded_arcs(
     vertices: Array, kept: Sequence[bool] = (), interrupt: Callable[[], None] = ignore_interrupt
 ) -> ChordedArcs | None:
-    """Return the arcs that a loop approximates by chords; None where it has none.
+    """Return the arcs that a loop approximates by chords; None if it has none.
 
     Four chords or more count as an arc where neighbours meet at less than ``CORNER_OF_CHORDS`` and all ends
     lie on one circle. So a regular polygon of up to 15 sides stays a polygon, and one of 16 sides may be a
@@ -392,8 +392,8 @@ def compute_turns(pieces: Sequence[MergedPiece]) -> Array:
 def fit_whole_circle(
     pieces: list[MergedPiece], tolerance: float, near: float | None = None
 ) -> list[MergedPiece] | None:
-    """Return the two halves of the circle that is within a tolerance in mm of a loop; None where no circle
-    is.
+    """Return the two halves of the circle that is within a tolerance in mm of a loop; None if there is no
+    such circle.
 
     The loop's vertices must be within ``near`` mm of the circle; None stands for the tolerance.
     """
@@ -446,9 +446,8 @@ def merge_longest_runs(
     Parameters
     ----------
     near : largest distance of vertices from the line or arc, in mm.
-    tolerance : largest distance in mm of the segments between the vertices; where these are arcs, at most
-        ``DISGUISE``.
-    least : how many pieces a run with chords must have. Runs of fewer than ``LEAST_CHORDS`` become lines
+    tolerance : largest distance in mm of the segments between the vertices; for arcs at most ``DISGUISE``.
+    least : least number of pieces of a run with chords. Runs of fewer than ``LEAST_CHORDS`` become lines
         only.
     """
     points = list_starts([*pieces, pieces[0]])
@@ -547,8 +546,8 @@ def measure_departure(
 ) -> float:
     """Return the largest distance in mm of a run of pieces from a line or arc.
 
-    inf where it exceeds ``tolerance`` (or ``near`` for vertices), or where the run does not go forward along
-    the segment.
+    inf if it exceeds ``tolerance`` (or ``near`` for vertices), or if the run does not go forward along the
+    segment.
     """
     if isinstance(segment, Arc):
         cx, cy = segment.center

@@ -56,8 +56,7 @@ def offset_segment(segment: Segment, radius: float) -> Segment | None:
 def list_trimmed_offsets(
     segments: Sequence[Segment], radius: float, flat: float | None = None
 ) -> list[tuple[int, Segment]]:
-    """Return those pieces of the boundary of (part + disc of ``radius`` mm) that are offsets of the part's
-    segments.
+    """Return the offsets of the part's segments, trimmed to the boundary of (part + disc of ``radius`` mm).
 
     Arcs around the part's corners are left out.
 
@@ -135,7 +134,7 @@ def keep_clear_parts(
 ) -> list[Segment]:
     """Return the parts of a segment that are clear, in order along it.
 
-    The segment is cut where it meets the line or the circle of any of ``others``. A part is kept where its
+    The segment is cut where it meets the line or the circle of any of ``others``. A part is kept if its
     middle is clear: ``is_clear`` takes points (M, 2) and returns booleans (M,).
     """
     half = piece.half_extent

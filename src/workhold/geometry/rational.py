@@ -374,8 +374,8 @@ def compute_turning_coefficients(u: Array, v: Array) -> Array:
 
 
 def bound_departure(pieces: Pieces, segment: Segment, limit: float) -> float:
-    """Return an upper bound in mm of the distance between a curve and a line or arc, of any point of either
-    from the other.
+    """Return an upper bound in mm of the distance of any point of a curve from a line or arc, and of any
+    point of that from the curve.
 
     Both must have the same ends. The result is inf where the distance cannot be shown to be at most ``limit``
     mm, or where the curve turns back along the segment. The segment may be a full circle.
@@ -393,11 +393,11 @@ def bound_departure(pieces: Pieces, segment: Segment, limit: float) -> float:
 
 
 def measure_departure(pieces: Pieces, segment: Segment) -> tuple[float, float, bool]:
-    """Return how far a curve is from a line or arc: (1) a lower bound, (2) an upper bound in mm, (3) whether
-    it runs forward.
+    """Return (lower bound, upper bound) in mm of the distance of a curve from a line or arc, and whether the
+    curve runs forward.
 
-    The lower bound is the distance that the ends of the pieces reach. A curve runs forward where it never
-    turns back along the segment.
+    The lower bound is the largest distance of an end of a piece. A curve runs forward if it never turns back
+    along the segment.
     """
     w = pieces[..., 2]
     if isinstance(segment, Arc):

@@ -1,18 +1,19 @@
-"""The planar subdivision of lines and arcs: the pieces into which they cut each other, and loops of these.
+"""The planar subdivision of lines and arcs: the pieces into which they cut each other, and loops of such
+pieces.
 
-Segments of one carrier are joined first, so a piece that many segments share is there once. To find the
-border of a region, points on both sides of every piece are tested; pieces with the region on one side only
-are its border. The points are so near that no other carrier runs between them and the piece. Twins, such as
-those beside the place where a circle touches a line, have such points only on their outer sides, and one of
-them is the border.
+Segments of one carrier are joined first, so that a piece shared by many segments occurs once. To find the
+border of a region, points on both sides of every piece are tested; pieces with the region on exactly one side
+form the border. The points are so near that no other carrier runs between them and the piece. Twins, as
+beside the point where a circle touches a line, have such points only on their outer sides; one of them is
+then the border.
 
 Glossary
 --------
-subdivision : the pieces of some curves between all points in which these meet (de Berg et al.,
-    "Computational Geometry", chapter 2).
-position : place along a carrier: millimetres on a line, radians on a circle.
+subdivision : the pieces of some curves between all points in which these meet (de Berg et al., "Computational
+    Geometry", chapter 2).
+position : coordinate along a carrier: millimetres on a line, radians on a circle.
 span : a range of positions that some segment covers.
-clearance : how far a point of a piece is from all other carriers, as far as they are covered, in mm.
+clearance : distance in mm of a point of a piece from the covered parts of all other carriers.
 twins : pieces of several carriers between the same two ends that run nowhere farther apart than ``THIN``.
 """
 
@@ -62,7 +63,8 @@ Inside = Callable[[Sequence[Point]], Sequence[bool]]
 
 @define
 class CutCurve:
-    """A whole line or circle (a carrier), the ranges of it that segments cover, and where it is cut.
+    """A whole line or circle (a carrier), the ranges of it that segments cover, and the positions at which it
+    is cut.
 
     Positions are in mm on a line and in radians on a circle.
 
@@ -217,7 +219,7 @@ def subdivide(
     ----------
     segments : in any order and direction; they may overlap.
     cuts : further points at which the carrier of a segment is cut.
-    comparisons : how many pairs may be compared; None for no limit.
+    comparisons : largest number of pairs to compare; None for no limit.
 
     Raises
     ------
@@ -405,8 +407,8 @@ class CutCurveIndex:
                     yield first + int(row), self.every[numbers[column]]
 
     def measure_distance(self, carrier: CutCurve, point: Point) -> float:
-        """Return the distance in mm from a point to its nearest point on a carrier; inf where no span covers
-        that.
+        """Return the distance in mm from a point to its nearest point on a carrier; inf if no span covers
+        that point.
         """
         position = carrier.find_position(point)
         return dist(point, carrier.compute_point(position)) if carrier.is_covered(position) else inf
@@ -530,7 +532,7 @@ def find_inside_sides(
     """Return for each place whether a point to the left of a carrier, and one to the right, belong to a
     region.
 
-    A place is (carrier, position, distance of both points from the carrier in mm). Left is as seen in the
+    A place is (carrier, position, distance of both points from the carrier in mm). Left is seen in the
     direction of growing positions.
     """
     points: list[Point] = []
@@ -572,8 +574,8 @@ def find_clearest_positions(
 
 
 def choose_side_distance(piece: BorderPiece, beside: float) -> float:
-    """Return how far from a piece, in mm, the points to its left and right are tested where no other carrier
-    is near.
+    """Return the distance in mm from a piece at which to test the points to its left and right when no other
+    carrier is near.
 
     It is ``beside``, or less for a short piece.
     """
@@ -604,9 +606,9 @@ def group_twins(pieces: Mapping[int, BorderPiece]) -> list[list[int]]:
 def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> list[list[BorderPiece]]:
     """Return the pieces of a border joined to closed loops, each with the region on its left.
 
-    Where several pieces start at one point, the loop follows the piece that turns farthest to the left; so
-    two corners of a region that touch stay in separate loops. No loop starts with a piece shorter than
-    ``reach``, so such pieces may be left out.
+    If several pieces start at one point, the loop follows the piece that turns farthest to the left. So two
+    corners of a region that touch stay in separate loops. No loop starts with a piece shorter than ``reach``,
+    so such pieces may be left out.
 
     Parameters
     ----------
@@ -615,7 +617,7 @@ def join_border_loops(pieces: Sequence[BorderPiece], reach: float = REACH) -> li
     Raises
     ------
     InputError
-        Where a loop does not close, so that some of the border is missing.
+        If a loop does not close because some of the border is missing.
     """
     left = set(range(len(pieces)))
     starts = np.array([piece.start for piece in pieces]).reshape(-1, 2)

@@ -122,7 +122,7 @@ class CenteredOutline:
 
     @property
     def first(self) -> int | None:
-        """The index of the first segment whose anchor is not at the centroid; None where all are."""
+        """The index of the first segment whose anchor is not at the centroid; None if all are."""
         off_center = np.flatnonzero(np.hypot(*self.points[:, 0].T) > SAME_AFTER_TURN)
         return int(off_center[0]) if len(off_center) else None
 

@@ -58,7 +58,7 @@ def triangulate(loops: Sequence[Sequence[Point]]) -> list[Triangle]:
 
 
 def compute_turn(p: Point, q: Point, r: Point) -> float:
-    """Return twice the signed area of the triangle p, q, r: positive where it turns counter-clockwise."""
+    """Return twice the signed area of the triangle p, q, r: positive for a counter-clockwise turn."""
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0])
 
 
@@ -71,12 +71,12 @@ class SweepLine:
     ----------
     points : the vertices.
     after, before : for each vertex the index of the next and of the previous vertex on its loop.
-    sides : sides run downward that the line crosses, from left to right; a side is given by the index of its
-        upper vertex.
+    sides : the downward sides that the line crosses, from left to right, each given by the index of its upper
+        vertex.
     helpers : for each of ``sides`` the lowest vertex above the line that sees the side along a horizontal.
     merges : indices of vertices passed whose interior angle is above a half turn, with both neighbours above
         them.
-    diagonals : for a vertex, the other ends of its diagonals.
+    diagonals : for each vertex, the other ends of its diagonals.
     """
 
     points: Sequence[Point]
@@ -134,7 +134,7 @@ class SweepLine:
         self.helpers[side] = v
 
     def count_left_of(self, v: int) -> int:
-        """Return how many of ``sides`` are to the left of vertex v."""
+        """Return the number of ``sides`` to the left of vertex v."""
         points, after = self.points, self.after
         return bisect_right(
             self.sides, 0, key=lambda side: compute_turn(points[side], points[after[side]], points[v]) <= 0

@@ -1,5 +1,5 @@
-"""Tests of each fixture by itself: whether it touches the required faces, and keeps the largest location
-error.
+"""Tests of each fixture by itself: whether it touches the required faces, and whether its location error is
+allowed.
 
 Fixtures are proven first and tested afterwards, so the search report counts all that were proven, and the
 list is complete for the query.

@@ -1,19 +1,19 @@
-"""Bounds of the rank of fixtures that are not proven yet: by pairs of clamps, and for all tilted fixtures.
+"""Bounds of the rank of fixtures that are not yet proven: by pairs of clamps, and for all tilted fixtures.
 
-Contacts of three locators and one clamp determine the locators' reactions to the clamp's force. So of any two
-clamps at one seat it is known approximately whether they close, how far their forces may differ, and how much
-the strongest peg carries. ``listing.seat_order`` uses this where the ranking has a figure of the clamps.
+Contacts of three locators and one clamp determine the locators' reactions to the clamp's force. So for any
+two clamps at one seat it is approximately known whether they close, how far their forces may differ, and the
+force on the strongest peg. ``listing.seat_order`` uses this where the ranking has a figure of the clamps.
 
-Errors of the forces. The place of a clamp's contact is uncertain by what its record says. An error of place e
+Errors of the forces. The record of a clamp's contact has an error bound of its place. An error of place e
 turns a normal by e over the radius of its arc, and changes a moment by e / L. The error of the reactions is
 the error of normals and moments times the inverse of the locators' wrenches, divided by the clamp's push,
 since the clamp moves along its line. All bounds are to first order, and generous; where a bound is not small,
 the forces count as unknown.
 
-A tilt costs points, and the location error has a lower bound. Pegs are off by p and faces by f, so a contact
-is off by t = p + f along its normal. Along the tangent the contact is off by at least p, and by at least t
-where no two pegs touch the same arc. So the location error is at least sqrt(t^2 + p^2), or t sqrt 2 (theorem
-"tilted fixtures" of docs/method-theorems.md).
+A tilt costs points, and the location error has a lower bound. Pegs have the tolerance p and faces the
+tolerance f, so a contact may be off by t = p + f along its normal. Along the tangent it may be off by p at
+least, and by t at least if no two pegs touch the same arc. So the location error is at least sqrt(t^2 + p^2),
+or t sqrt 2 (theorem "tilted fixtures" of docs/method-theorems.md).
 """
 
 from __future__ import annotations
@@ -82,8 +82,8 @@ MANY = 1 << 20
 
 
 def find_first_clamp_figure(query: Query) -> int | None:
-    """Return the index in the query's ranking of the first figure
-    that pairs of clamps bound; None without one.
+    """Return the index in the query's ranking of the first figure that pairs of clamps bound; None if there
+    is none.
 
     The figures that pairs of clamps bound are the keys of :data:`BOUNDED`.
     """
@@ -132,7 +132,7 @@ def compute_clamp_forces(records: Array, c: CandidateFixtures, problem: Problem)
     """Return the forces of N contacts of three locators and a clamp, (N, 5); see ``kernels.contact.seats``.
 
     Columns: the locators' forces in the order of their holes on the plate, the force at the clamp's face, and
-    an error bound. The bound is inf where the forces are not known, and -1 for a clamp that surely holds the
+    an error bound. The bound is inf if the forces are not known, and -1 for a clamp that surely holds the
     part alone. ``records`` (N, 19) and ``c`` describe the same contacts.
     """
     column, row = problem.frame.map_step_to_toolkit(c.column[:, LOCATOR_CONTACTS], c.row[:, LOCATOR_CONTACTS])
@@ -176,8 +176,8 @@ def list_preferred_angles(query: Query) -> list[tuple[float, float]]:
 def bound_keys_when_tilted(query: Query, problem: Problem) -> OrderKeys | None:
     """Return lower bounds of the ranking keys of all fixtures at other than the preferred angles, one row.
 
-    None where the angle makes no difference, and where no bound is known: for flat jaws or fences, and for
-    parts with several outlines.
+    None if the angle makes no difference, and if no bound is known: for flat jaws or fences, and for parts
+    with several outlines.
 
     Parameters
     ----------

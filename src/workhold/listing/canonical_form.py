@@ -1,5 +1,6 @@
-"""Candidates for fixtures, as arrays: brought to canonical form and listed once, before they become a
-table."""
+"""Candidates for fixtures, as arrays: their canonical form, and removal of repetitions, before they become a
+table.
+"""
 
 from __future__ import annotations
 
@@ -67,13 +68,14 @@ class RowArrays:
 
 @define(frozen=True, eq=False)
 class CandidateFixtures(RowArrays):
-    """N fixtures not yet in a table; arrays are (N, 4), standing pegs first, unless said otherwise.
+    """N fixtures not yet in a table; arrays are (N, 4), fixed pegs first, unless noted otherwise.
 
     Parameters
     ----------
-    standing : (N,) number of pegs, the first ones, on the carrier that stands still.
+    standing : (N,) number of pegs on the fixed carrier; these are the first ones.
     feature : index of the feature that each peg touches.
-    column, row : each peg's hole; columns count on each carrier by itself, rows on both carriers together.
+    column, row : each peg's hole; columns are counted on each carrier separately, rows on both carriers
+        together.
     theta : (N,) orientation of the workpiece in radians.
     point : (N, 4, 2) centres of pegs in the part's frame, relative to the centre of the part, in mm.
     gap : (N,) x distance in mm from the rightmost standing to the leftmost moving peg.
@@ -122,7 +124,8 @@ def make_canonical(c: CandidateFixtures, swapped: int) -> CandidateFixtures:
 
 
 def assign_contacts_to_faces(records: Array, problem: Problem, pegs: int) -> tuple[IntArray, Array]:
-    """Return records with every way to assign contacts near joints to the features that meet there.
+    """Return a copy of each record for every way to assign its contacts near joints to the features that meet
+    there.
 
     The result is (1) for each new record the index (M,) of the record it comes from, ascending, and (2) the
     records (M, 19), the original ones included. Only the first ``pegs`` contacts of a record are varied.
@@ -147,8 +150,8 @@ def are_lowest(feature: IntArray, point: Array, problem: Problem) -> NDArray[np.
     """Return a mask (N,): True where every contact at a joint is on the feature with the lowest index there.
 
     ``feature`` (N, P) and ``point`` (N, P, 2), in mm from the part's centre, describe P contacts each. With a
-    limit of the location error, a contact may be found on another feature alone; the same contact on the
-    lowest feature then has an error beyond the limit.
+    limit of the location error, a contact may be found only on another feature; on the lowest feature its
+    error is then beyond the limit.
     """
     one, other = find_joints(problem, JOINT)
     is_lowest = np.ones((len(problem.rows), 2), np.bool_)
@@ -223,7 +226,7 @@ def mark_changes(words: list[IntArray]) -> NDArray[np.bool_]:
 def split_into_clusters(
     order: IntArray, fresh: NDArray[np.bool_], *values: tuple[Array, float]
 ) -> tuple[IntArray, NDArray[np.bool_]]:
-    """Return (1) an order (N,) and (2) a mask (N,) of group starts, with each group split where values leap.
+    """Return (order (N,), mask (N,) of group starts) in which each group is split where values leap.
 
     Parameters
     ----------
@@ -276,7 +279,8 @@ def list_each_once(c: CandidateFixtures) -> CandidateFixtures:
 
 
 def number_places(point: Array, gap: Array) -> Array:
-    """Return one number in mm that tells places of the part apart at equal holes and orientation, (N,).
+    """Return one number in mm per candidate, (N,), that distinguishes places of the part at equal holes and
+    orientation.
 
     It mixes the centre of a peg in the part's frame, ``point`` (N, 2), and ``gap`` (N,), both in mm, with
     fixed irrational factors.

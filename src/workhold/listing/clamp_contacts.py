@@ -1,8 +1,8 @@
-"""Contacts of locators with one clamp of two: what the locators take up of its force, and where it may be
-bolted.
+"""Contacts of locators with one of two clamps: the locators' shares of its force, and the holes in which it
+may be bolted.
 
 The search of each direction proves contacts of locators, or of a wall and a locator, with a clamp. A clamp
-that holds the part by itself is left out, for it needs no second one.
+that holds the part by itself is left out, because it needs no second one.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class ClampContacts:
     line : (M,) row or column along which the clamp moves.
     tip : (M, 2) centre of the tip on the plate in mm; beside a wall x counts from the locator.
     taken : (M, 3) forces of locators and wall, divided by the force at the clamp's face.
-    push : (M,) force of the clamp along its line, divided by the force at its face.
+    push : (M,) force of the clamp along its line, divided by the force at the face that it touches.
     doubt : (M,) error bound of ``taken``.
     holes : (H, 2) column and row of every hole in which one of the clamps may be bolted.
     hole_of : (H,) index of the contact whose clamp may be bolted there.
@@ -94,8 +94,8 @@ class ClampContacts:
 
 
 def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContacts:
-    """Return the contacts with a wall and a locator whose clamp may
-    be one of two and can be bolted, each once.
+    """Return, each once, the contacts with a wall and a locator whose clamp can be bolted and may be one of
+    two.
 
     ``found`` are the proven pairs of locator and clamp of one direction.
     """
@@ -128,7 +128,7 @@ def make_contacts_on_wall(found: WallFixtures, problem: Problem) -> ClampContact
 
 
 def make_contacts_of_candidates(c: CandidateFixtures, problem: Problem) -> ClampContacts:
-    """Return the contacts of three locators and a clamp whose clamp may be one of two and can be bolted.
+    """Return the contacts of three locators and a clamp that can be bolted and may be one of two.
 
     ``c`` are the proven candidates of one direction of the clamp.
     """
@@ -268,10 +268,9 @@ def may_hold_in_pair(taken: Array, push: Array) -> BoolArray:
 def bound_rounding_doubts(
     inverse: Array, taken: Array, rows: Array, push: Array, problem: Problem
 ) -> tuple[Array, Array]:
-    """Return error bounds due to rounding (1) of the clamp's push,
-    (N,), and (2) of the locators' forces, (N,).
+    """Return error bounds due to rounding: (of the clamp's push (N,), of the locators' forces (N,)).
 
-    The error of a place is that of the contact equations times their inverse; along a clamp's line it is
+    The error of a place is the error of the contact equations times their inverse; along a clamp's line it is
     divided by the push. An error of place e turns a normal by e over the arc's radius, and changes a moment
     by e / L. The bounds are to first order, doubled.
 

@@ -1,11 +1,11 @@
-"""Where a clamp is bolted: in a hole of its line, behind its tip.
+"""The hole in which a clamp is bolted: a hole of its line, behind its tip.
 
-A clamp slides along a line of the plate's holes. With a longest travel it is bolted in the nearest hole
-behind its tip from which its body, a capsule from the hole to the tip, is clear of locators and part. Without
-one the clamp is its tip alone, without a hole.
+A clamp slides along a line of the plate's holes. A clamp with a longest travel is bolted in the nearest hole
+behind its tip for which its body, a capsule from the hole to the tip, is clear of locators and part. A clamp
+without a longest travel is treated as its tip alone, without a hole.
 
-The body from a farther hole contains that from a nearer one. So if a program's tool comes too near to the
-body from the nearest hole that the other rules allow, it does so for all holes.
+The body for a farther hole contains the body for a nearer one. So if a program's tool comes too near to the
+body for the nearest hole that the other rules allow, it does so for all holes.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ class ClampPlacement:
     locators : (N, K, 2) centres of the K locators.
     place : (N,) coordinate of the tip along its line, from hole 0.
     pitch : distance of holes along the lines.
-    first, last : (N,) the lowest and the highest hole that the plate has on the line.
+    first, last : (N,) the lowest and the highest hole of the plate on the line.
     fits : (N,) whether the plate has the locators' holes and the clamp's line.
     seen : (N, 2) centres of the tips in the part's frame, relative to the part's centre.
     theta : (N,) orientations of the part in radians.
@@ -110,8 +110,7 @@ class ClampPlacement:
     theta: Array
 
     def find_nearest_holes(self, problem: Problem) -> tuple[IntArray, BoolArray]:
-        """Return (1) the nearest permitted hole on each clamp's line,
-        (N,), and (2) whether there is one, (N,).
+        """Return (the nearest permitted hole on each clamp's line, whether there is one), (N,) each.
 
         The hole is 0 for a clamp without longest travel, and where none is permitted.
         """
@@ -157,7 +156,7 @@ class ClampPlacement:
         """Return a mask (M,): True for clamps whose bodies are clear of
         locators, part, and the program's tools.
 
-        The body reaches from the tip to the hole. ``index`` (M,) selects fixtures, ``stroke`` (M,) is the
+        The body extends from the tip to the hole. ``index`` (M,) selects fixtures, ``stroke`` (M,) is the
         distance in mm from tip to hole.
         """
         radius, behind = self.clamp.peg_radius, np.zeros((len(index), 2))

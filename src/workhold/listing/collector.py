@@ -1,13 +1,14 @@
-"""Fixtures collected while a search goes on, all or the best: decided, listed once, measured and ranked.
+"""Collection of fixtures during a search, all or the best: they are decided, listed once, measured and
+ranked.
 
 Records of the kernels are decided, brought to canonical form, placed in the toolkit and listed once. If the
-query asks for the best, only as many are kept, and they determine which closure margin further fixtures
-must reach.
+query asks for the best, only that number is kept, and these determine the closure margin that further
+fixtures must reach.
 
 If it asks for all, the fixtures are sorted by holes, so that repetitions are neighbours. Each part of that
-order is listed and measured on some thread, and the parts are sorted by rank. Fixtures of equal rank stay in
-the order of their identities. With a folder only a few parts are in memory at a time; the outcome is the
-same.
+order is listed and measured on one of the threads, and the parts are then sorted by rank. Fixtures of equal
+rank stay in the order of their identities. With a folder only a few parts are in memory at a time; the
+outcome is the same.
 """
 
 from __future__ import annotations
@@ -75,10 +76,10 @@ BLOCK = 1 << 14
 def finish(
     records: list[Array], problem: Problem, cancel: Event | None = None
 ) -> tuple[CandidateFixtures, SearchReport]:
-    """Decide records on this thread; return (1) their fixtures in
-    canonical form, each once, and (2) a report.
+    """Decide records on this thread; return (their fixtures in canonical form, each once, a report on all
+    records).
 
-    The report is on all records.
+    The report counts all records.
 
     Parameters
     ----------
@@ -105,9 +106,10 @@ def split_into_blocks(records: Iterable[Array]) -> Iterator[Array]:
 def decide_and_list(
     records: Array, problem: Problem, course: DecidingProgress
 ) -> tuple[CandidateFixtures, SearchReport]:
-    """Decide records (N, 19); return (1) the fixtures that fit the toolkit and the query, and (2) a report.
+    """Decide records (N, 19); return (the fixtures that fit the toolkit and the query, a report on all
+    records).
 
-    The report is on all records. The fixtures are in canonical form; repetitions are not removed.
+    The fixtures are in canonical form; repetitions are not removed.
     """
     proven, account = decide_records(records, problem, course)
     candidates = make_canonical(make_candidates(proven, problem), problem.frame.swapped_peg_count)
@@ -128,7 +130,7 @@ class RecordBlocks:
     waiting: list[Array] = field(factory=lambda: [np.zeros((0, record.RECORD_LENGTH))], init=False)
 
     def add(self, records: Array) -> list[Array]:
-        """Take records (N, 19); return the blocks that are ready.
+        """Add records (N, 19); return the blocks that are ready.
 
         None are ready until :data:`BLOCK` rows wait; then all rows are returned, the last block perhaps
         shorter.
@@ -141,7 +143,7 @@ class RecordBlocks:
         return [together[k : k + BLOCK] for k in range(0, len(together), BLOCK)]
 
     def take_rest(self) -> Array:
-        """Return the records that still wait, perhaps none, as one array; they stay in the buffer."""
+        """Return the waiting records, perhaps none, as one array; they stay in the buffer."""
         return np.concatenate(self.waiting)
 
 
@@ -171,7 +173,7 @@ class BestFixtures:
     cancel : when set, records that need slow methods are left undecided.
     is_limited : whether the search has a limit of the location error.
     needed : limits that further fixtures must keep to be among the best; may be set beforehand.
-    keys : ranking keys of the fixtures kept, once more fixtures are known than are asked for; None before.
+    keys : ranking keys of the kept fixtures; None until more fixtures are known than the query asks for.
     """
 
     problem: Problem
@@ -199,7 +201,7 @@ class BestFixtures:
         return self.problem.query.best
 
     def add(self, records: NDArray[np.float64]) -> InterestLimits:
-        """Take records (N, 19) from the search; return the limits that further fixtures must keep."""
+        """Add records (N, 19) from the search; return the limits that further fixtures must keep."""
         self.waiting.append(records)
         least = WAITING if self.problem.query.by_margin_alone else WAITING_LONG
         if sum(map(len, self.waiting)) >= max(least, self.wanted_count):
@@ -226,7 +228,7 @@ class BestFixtures:
     def drop_beaten(self, everything: CandidateFixtures) -> CandidateFixtures:
         """Return the candidates that may be among the best, or tie with the last of the best.
 
-        Updates ``keys`` and ``needed``. ``everything`` must be free of repetitions.
+        Updates ``keys`` and ``needed``. ``everything`` must not contain repetitions.
         """
         if len(everything.standing) <= self.wanted_count:
             return everything
@@ -256,7 +258,7 @@ class BestFixtures:
     def rules_out(self, bound: OrderKeys) -> bool:
         """Return whether every fixture whose keys are at least ``bound`` is surely not among the best.
 
-        False until more fixtures are known than are asked for.
+        False until more fixtures are known than the query asks for.
         """
         self.decide()
         return self.keys is not None and bool(
@@ -287,7 +289,7 @@ class ResultCollector:
     ----------
     problem : the problem that was searched.
     pool : threads that share the work.
-    ahead : how many pieces of work may be under way.
+    ahead : largest number of pieces of work in progress at the same time.
     cancel : when set, records that need slow methods are left undecided, remaining fixtures are not measured,
         and at most the best ``LISTED_LATE`` measured ones are listed.
     folder : folder for temporary files; None to keep all in memory.
@@ -295,7 +297,7 @@ class ResultCollector:
         the order of their identities where the ranking counts steps of error.
     course : progress of deciding.
     found : (A,) number of fixtures of each of A arrangements, once measured.
-    distinct : (A,) the same, where fixtures that the part's symmetry makes equal count once.
+    distinct : (A,) the same; fixtures that the part's symmetry makes equal count once.
     """
 
     problem: Problem
@@ -337,16 +339,14 @@ class ResultCollector:
             raise
 
     def take_records(self, records: NDArray[np.float64]) -> InterestLimits:
-        """Take records (N, 19), in the order of the search; return limits that every fixture keeps."""
+        """Add records (N, 19), in the order of the search; return the limits that every fixture must keep."""
         self.course.total += len(records)
         for block in self.batches.add(records):
             self.submit_block(block)
         return InterestLimits()
 
     def submit_block(self, block: NDArray[np.float64]) -> None:
-        """Begin to decide a block of records on the pool; wait if more than
-        ``ahead`` blocks are under way.
-        """
+        """Start deciding a block of records on the pool; wait if more than ``ahead`` blocks are in progress."""
         self.deciding.append(self.pool.submit(self.decide_block, block))
         while len(self.deciding) > self.ahead:
             self.keep_run(*self.deciding.popleft().result())
@@ -367,11 +367,13 @@ class ResultCollector:
         self.accounts.append(account)
 
     def add_candidates(self, candidates: CandidateFixtures, account: SearchReport) -> None:
-        """Add candidates that are decided already, and the report on their records."""
+        """Add already decided candidates, and the report on their records."""
         self.keep_run(self.sort_by_holes(candidates), account)
 
     def finish_deciding(self, progress: Progress | None = None) -> SearchReport:
-        """Decide the rest, wait for all blocks under way, and return the report on all records."""
+        """Decide the remaining records, wait for all blocks in progress, and return the report on all
+        records.
+        """
         self.submit_block(self.batches.take_rest())
         while self.deciding:
             wait([self.deciding[0]], timeout=NAP)
@@ -415,13 +417,12 @@ class ResultCollector:
     def measure_part(
         self, numbered: tuple[int, Callable[[], SortedRun]]
     ) -> tuple[SortedRun, SortedRun | None, OrderKeys]:
-        """Return (1) a part's fixtures, (2) their smallest images, (3)
-        the keys of the fixture with the least error.
+        """Return (a part's fixtures, their smallest images, the keys of the fixture with the least error).
 
-        (1) The fixtures are listed once, measured, and sorted by rank as far as it is known without other
-        parts. (2) The smallest images are those under rotations of the part onto itself; None for a part
-        without symmetry. (3) The least error is the effective one; the keys are one row, or none where steps
-        of error do not count.
+        The fixtures are listed once, measured, and sorted by rank, as far as it is known without other parts.
+        The smallest images are those under rotations of the part onto itself; None for a part without
+        symmetry. The least error is the effective one; the keys are one row, or no row if steps of error do
+        not count.
 
         Parameters
         ----------
@@ -446,8 +447,8 @@ class ResultCollector:
 
     @property
     def least_error(self) -> int | None:
-        """Least effective error in billionths of a mm, from which steps of
-        error count; None where they do not count.
+        """Least effective error in billionths of a mm, from which steps of error are counted; None if they do
+        not count.
         """
         return None if self.fine is None else self.fine.least_error
 

@@ -1,6 +1,6 @@
 """Contacts of three locators and a clamp, in packed form, and groups of them that contain whole seats.
 
-In packed form they need half the memory of records, since all contacts of a range of orientations are held
+In packed form they need half the memory of records, since all contacts of a range of orientations are kept
 until they are ordered (``listing.seat_order``).
 """
 
@@ -88,8 +88,8 @@ class SeatGroups:
     starts : (G,) index in ``order`` at which each group begins.
     bounds : (G,) lower bounds of the ranking keys of fixtures in each group.
     sharpened : called with ``order`` and ``starts`` of some groups; returns better bounds, from pairs of
-        clamps. None where pairs cannot improve the bounds, or have done so.
-    alike : how many leading numbers of the keys are not changed by ``sharpened``.
+        clamps. None if pairs cannot improve the bounds, or have already done so.
+    alike : number of leading entries of the keys that ``sharpened`` does not change.
     """
 
     order: IntArray
@@ -107,8 +107,8 @@ class SeatGroups:
         """Yield, batch by batch, the indices of contacts of groups,
         best bound first, ascending within a batch.
 
-        The iteration ends when no remaining group can have one of the best. The caller adds what it finds in
-        a batch to ``kept`` before the next. Groups that may have the least error come first.
+        The iteration ends when no remaining group can have one of the best. Before asking for the next batch,
+        the caller adds its findings to ``kept``. Groups that may have the least error come first.
 
         Parameters
         ----------
@@ -156,7 +156,7 @@ class SeatGroups:
         return self.order[np.arange(sizes.sum()) + np.repeat(self.starts[groups] - starts, sizes)], starts
 
     def append_group(self, last: IntArray) -> SeatGroups:
-        """Return the groups with one more at the end: contacts ``last`` (N,) that surely make no fixture.
+        """Return the groups with one more at the end: contacts ``last`` (N,) that surely form no fixture.
 
         The new group has the worst bounds; without contacts, none is added.
         """

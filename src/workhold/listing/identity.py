@@ -1,17 +1,18 @@
-"""When two fixtures are the same or near duplicates, and how many sets they form under rotations of a part.
+"""Identity of fixtures: when two are the same or near duplicates, and the number of sets that they form under
+rotations of a part.
 
 A fixture is identified by integers for its holes and lines, and by the pose, which determines the contacts.
-Faces are left out, since a contact at a tangent joint is on two of them and only one is listed. Fixtures that
-a rotation of the part, or half a turn of the toolkit, carries into each other have the same smallest image,
-which identifies the set.
+Faces are not part of the identity, since a contact at a tangent joint is on two faces and only one is listed.
+Fixtures that a rotation of the part, or half a turn of the toolkit, carries into each other have the same
+smallest image, which identifies the set.
 
 Glossary
 --------
-near duplicates : fixtures that a machinist would call one way to hold the part. They are of one arrangement,
-    all square or all tilted, and their pegs touch the same faces for each carrier. Rotations and mirror
-    images of the part onto itself and the half turn that swaps the carriers make no difference. Such fixtures
-    differ by a row or a column more or less, or by the part's symmetry.
-entry : the first of some near duplicates, and how many come after it.
+near duplicates : fixtures that a machinist would regard as one way to hold the part. They have the same
+    arrangement, are all square or all tilted, and the pegs of each carrier touch the same faces. Rotations
+    and mirror images of the part onto itself, and the half turn that swaps the carriers, are ignored. Such
+    fixtures differ by a row or a column more or less, or by the part's symmetry.
+entry : the first of some near duplicates, with the number of the others.
 """
 
 from __future__ import annotations
@@ -67,7 +68,7 @@ class FixtureIdentity:
     Parameters
     ----------
     toolkit, part : the toolkit, and the part that it holds.
-    every : whether each choice of clamps is a fixture of its own; if False, one fixture stands for all clamps
+    every : whether each choice of clamps is a separate fixture; if False, one fixture represents all clamps
         with its directions.
     rotations : rotations of the part onto itself, the identity first.
     """
@@ -171,8 +172,8 @@ class FixtureIdentity:
         return pack_integers(*numbers), anchor, sign * away[:, : None if self.every else 0]
 
     def count_sets(self, words: Sequence[IntArray], pose: Array, arrangement: IntArray) -> IntArray:
-        """Return the number of fixtures of each arrangement, (A,), where
-        fixtures with the same image count once.
+        """Return the number of distinct fixtures of each arrangement, (A,). Fixtures with the same image
+        count once.
 
         ``words`` and ``pose`` are the two results of :meth:`find_smallest_face_images`; ``arrangement`` (N,) is
         that of each fixture.
@@ -194,7 +195,7 @@ def allows_half_turns(toolkit: Toolkit) -> bool:
 def turns_into_itself(arrangement: Arrangement, toolkit: Toolkit) -> bool:
     """Return whether half a turn of pegs and part together maps an arrangement to itself.
 
-    Two cases: (a) two jaws with equally many pegs that a half turn may exchange; (b) two clamps in opposite
+    It does for two jaws with equally many pegs that a half turn may exchange, and for two clamps in opposite
     directions on a plate without a wall.
     """
     ways = [
@@ -252,8 +253,8 @@ class SetCounter:
 
     @property
     def distinct(self) -> IntArray:
-        """Number of fixtures of each arrangement so far, (A,), where
-        those that symmetry makes equal count once.
+        """Number of distinct fixtures of each arrangement so far, (A,). Fixtures that symmetry makes equal
+        count once.
         """
         if not self.images:
             return self.found
@@ -292,13 +293,13 @@ BLOCK, MOST_LOOKED_AT = 1 << 14, 200_000
 
 @frozen(eq=False)
 class ShownEntries:
-    """The entries to show of a list of fixtures, where near duplicates are left out.
+    """The entries to show of a list of fixtures, without near duplicates.
 
     Parameters
     ----------
-    index : (E,) index of the fixture that stands for each entry, ascending.
+    index : (E,) index of the fixture that represents each entry, ascending.
     like : (E,) number of near duplicates of each entry that are left out.
-    unfit : how many fixtures are left out as unfit for a workshop.
+    unfit : number of fixtures left out as unfit for a workshop.
     """
 
     index: IntArray

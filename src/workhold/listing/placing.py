@@ -1,10 +1,10 @@
-"""Placing fixtures in the holes of the carriers, and which of them cannot be placed.
+"""Placing fixtures in the holes of the carriers, if possible.
 
 Pegs stand in the columns nearest to those of the other carrier. The largest travel or a blocked hole may
-demand that they move outward, first the standing ones, then the moving ones. Rows are shifted so that the
-lowest is 0, or centred where the carriers have an end; a blocked hole shifts them no farther than it must. A
-clamp on a plate of locators is bolted in a hole of its line instead (``listing.make_clamp_placement``). All
-this is in the frame of the search; the way back to the toolkit's own is the last step.
+demand that they move outward, first the fixed ones, then the moving ones. Rows are shifted so that the lowest
+is 0, or centred if the carriers have an end; a blocked hole shifts them as little as possible. A clamp on a
+plate of locators is bolted in a hole of its line instead (``listing.make_clamp_placement``). All this happens
+in the frame of the search; the last step changes to the toolkit's own frame.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ class PlacedCandidates:
 
     Parameters
     ----------
-    candidates : the candidates, turned by half a turn where they fit only so.
-    standing : (N,) number of columns by which the standing pegs are outward of their innermost place.
+    candidates : the candidates; those that fit only after half a turn are turned.
+    standing : (N,) number of columns by which the fixed pegs are moved outward from their innermost place.
     moving : (N,) the same for the moving pegs.
-    lift : (N,) by how many rows all pegs are shifted up.
+    lift : (N,) number of rows by which all pegs are shifted up.
     fits : (N,) whether the candidate has a place in the holes.
     """
 
@@ -70,8 +70,8 @@ class PlacedCandidates:
 def arrange_candidates(c: CandidateFixtures, problem: Problem) -> PlacedCandidates:
     """Return the places of candidates in the holes of both carriers.
 
-    ``fits`` says which have a place at an allowed angle. Where a candidate does not fit otherwise, a half
-    turn that swaps the carriers is tried.
+    ``fits`` tells which have a place at an allowed angle. If a candidate does not fit, it is tried after a
+    half turn that swaps the carriers.
     """
     angles, frame = problem.restrictions.angles, problem.frame
     clear = are_bodies_clear(c, frame)
@@ -145,8 +145,8 @@ def are_at_angle(theta: Array, angles: Sequence[Sequence[float]], frame: SearchF
 
 
 def count_free_columns(c: CandidateFixtures, frame: SearchFrame) -> tuple[IntArray, IntArray]:
-    """Return how many columns are free outward of the pegs (1) on the
-    standing, (2) on the moving carrier, each (N,).
+    """Return the number of free columns outward of the pegs: (on the fixed carrier, on the moving carrier),
+    (N,) each.
     """
     standing = is_standing(c.standing)
     return (
@@ -156,9 +156,9 @@ def count_free_columns(c: CandidateFixtures, frame: SearchFrame) -> tuple[IntArr
 
 
 def count_free_rows(c: CandidateFixtures, frame: SearchFrame) -> IntArray:
-    """Return how many rows are free above the pegs, (N,): the smaller number of both carriers.
+    """Return the number of free rows above the pegs, (N,): the smaller number of both carriers.
 
-    0 where no carrier has an end; negative where the pegs do not fit.
+    0 if no carrier has an end; negative if the pegs do not fit.
     """
     if all(carrier.rows is None for carrier in frame.carriers):
         return np.zeros(len(c.standing), np.int64)
@@ -197,7 +197,7 @@ def move_clear_of_blocked(
 ) -> PlacedCandidates:
     """Return the places with pegs moved outward and in rows until none stands in a blocked hole.
 
-    ``fits`` is False where there is no such place.
+    ``fits`` is False if there is no such place.
 
     Parameters
     ----------

@@ -1,15 +1,15 @@
 """The ranking of fixtures by keys, the first of which count most.
 
-If the query names figures, these are the keys: all but the last rounded to two significant digits, so that
-the next one decides among fixtures that are about as good; the last to nine decimals. Then a fixture's rank
-depends on no other fixture.
+If the query names figures, these are the keys. All but the last are rounded to two significant digits, so
+that the next one decides among fixtures that are about as good; the last is rounded to nine decimals. Then a
+fixture's rank does not depend on other fixtures.
 
 In the usual ranking a warning counts first. Then comes the number of steps, of a tenth each, by which the
 effective location error is above the least error. The least error is taken over all fixtures that are fit and
 without warning or, if there are none, over the best of the other classes (fit with a warning, then unfit).
-Then comes the class of the angle, and then the figures. So a rank depends on the
-least error, which is known only at the end. Until then fixtures are kept or dropped by rules that hold
-whatever the least error is (:meth:`OrderKeys.are_beaten`):
+Then comes the class of the angle, and then the figures. So a rank depends on the least error, which is known
+only at the end. Until then fixtures are kept or dropped by rules that hold for every least error
+(:meth:`OrderKeys.are_beaten`):
 
 - One fixture comes before another one whose effective error is a tenth larger or more, if it is fit and has
   no warning: steps count from an error no larger than either, so that the other has a step more.
@@ -86,7 +86,7 @@ TOGETHER = 1 << 22
 def measure_table(table: FixtureTable, problem: Problem) -> FixtureTable:
     """Return a table with all figures of quality computed.
 
-    Closure margin and clamp freedom keep the values that the search gave them.
+    Closure margin and clamp freedom keep the values from the search.
     """
     touched = TouchableFeatures.from_workpiece(
         problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length
@@ -120,12 +120,12 @@ class OrderKeys:
 
     Parameters
     ----------
-    first : (N, A) numbers that count first. Two cases: (a) in the usual ranking, whether the fixture is
-        unfit, and whether it has a warning, 0 or 1; (b) in any other ranking, all numbers. -inf in a bound
-        that says nothing.
+    first : (N, A) numbers that count first. In the usual ranking these are two flags, 0 or 1: whether the
+        fixture is unfit, and whether it has a warning. In any other ranking they are all numbers. -inf in an
+        empty bound.
     error : (N,) effective location errors in billionths of a mm, which count after ``first``, in steps above
-        the least error; None where steps do not count.
-    rest : (N, B) numbers that count after the steps; no columns where steps do not count.
+        the least error; None if steps do not count.
+    rest : (N, B) numbers that count after the steps; no columns if steps do not count.
     """
 
     first: Array
@@ -164,7 +164,7 @@ class OrderKeys:
 
     @property
     def is_known(self) -> BoolArray:
-        """Mask (N,): False for bounds that say nothing."""
+        """Mask (N,): False for empty bounds, which bound nothing."""
         return np.asarray(self.first[:, 0] != -inf)
 
     @property
@@ -174,9 +174,7 @@ class OrderKeys:
         return OrderKeys(np.full((1, self.first.shape[1]), inf), error, np.full((1, self.rest.shape[1]), inf))
 
     def choose(self, chosen: BoolArray, other: OrderKeys) -> OrderKeys:
-        """Return keys whose row k is that of this object where
-        ``chosen[k]``, and that of ``other`` elsewhere.
-        """
+        """Return keys whose row k is taken from this object if ``chosen[k]``, else from ``other``."""
         error = None
         if self.error is not None and other.error is not None:
             error = np.where(chosen, self.error, other.error)
@@ -186,7 +184,7 @@ class OrderKeys:
         return OrderKeys(first, error, rest)
 
     def drop_bounds_where(self, chosen: BoolArray) -> OrderKeys:
-        """Return keys in which the rows that the mask ``chosen`` (N,) selects are bounds that say nothing."""
+        """Return keys in which the rows selected by the mask ``chosen`` (N,) are replaced by empty bounds."""
         error = None if self.error is None else np.where(chosen, 0, self.error)
         first, rest = (np.where(chosen[:, None], -inf, rows) for rows in (self.first, self.rest))
         return OrderKeys(first, error, rest)
@@ -210,7 +208,7 @@ class OrderKeys:
 
     @property
     def is_fine(self) -> BoolArray:
-        """Mask (N,): True for rows that are fit and without a warning; all False where steps do not count."""
+        """Mask (N,): True for rows that are fit and without a warning; all False if steps do not count."""
         return np.asarray((self.first <= 0.0).all(axis=1)) & (self.error is not None)
 
     @property
@@ -227,7 +225,7 @@ class OrderKeys:
     def least_error(self) -> int | None:
         """Least error, in billionths of a mm, among the rows with the best ``first``.
 
-        None without rows, and where steps do not count.
+        None without rows, and if steps do not count.
         """
         if self.error is None or len(self) == 0:
             return None
@@ -349,8 +347,8 @@ class OrderKeys:
     def is_known_above(self, floor: int) -> bool:
         """Return whether no fixture outside this set can have a smaller error than the least one here.
 
-        The fixtures outside have errors of at least ``floor``, in billionths of a mm. False where steps do
-        not count, and where no row is fit and without warning.
+        The fixtures outside have errors of at least ``floor``, in billionths of a mm. False if steps do not
+        count, and if no row is fit and without warning.
         """
         if self.error is None or not self.is_fine.any():
             return False
@@ -360,7 +358,7 @@ class OrderKeys:
 def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
     """Return a mask: True where ``error`` surely has at least one step (a tenth) more than ``than``.
 
-    It holds whatever error the steps count from. Both are in billionths of a mm.
+    This holds for every error from which steps are counted. Both are in billionths of a mm.
     """
     eleven, ten = STEP_TENTHS
     return np.asarray((ten * error >= eleven * than) & (than > 0))
@@ -418,7 +416,9 @@ def convert_to_mm(error: int | None) -> float | None:
 
 
 def find_usual_errors(query: Query) -> EffectiveErrors | None:
-    """Return what computes effective errors, for a query with the usual ranking; None for any other query."""
+    """Return the computation of effective errors for a query with the usual ranking; None for any other
+    query.
+    """
     return EffectiveErrors.from_query(query) if query.has_house_order else None
 
 
@@ -439,7 +439,7 @@ def make_order_keys(
     Parameters
     ----------
     quality : (N, Q) figures; NaN ranks worst.
-    error : (N,) effective errors, as floats in mm or integers in billionths of a mm; None where they do not
+    error : (N,) effective errors, as floats in mm or integers in billionths of a mm; None if they do not
         count.
     angle : (N,) class of the angle: 0 as drawn, 1 quarter turn, 2 other.
     """
@@ -487,7 +487,8 @@ def round_coarsely(values: NDArray[np.float64]) -> NDArray[np.float64]:
 def make_best_possible_figures(count: int, query: Query) -> NDArray[np.float64]:
     """Return ``count`` equal rows of figures of quality that no fixture of a query can surpass, (count, F).
 
-    The closure margin is a share, so at most 1 / number of pegs; clamp freedom is at most 90 degrees.
+    The closure margin is the least of the pegs' shares, so at most 1 / number of pegs; clamp freedom is at
+    most 90 degrees.
     """
     best = np.array([inf if figure.more_is_better else 0.0 for figure in FIGURES])
     best[[CLOSURE_MARGIN, CLAMP_FREEDOM]] = 1.0 / query.toolkit.peg_count, 90.0

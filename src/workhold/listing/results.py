@@ -64,8 +64,8 @@ class SearchWork:
     ----------
     complete : whether the search came to its end.
     statistics : see ``Result.statistics``.
-    cells : how many ranges of orientation were examined.
-    examined : how many sets of four contacts were examined; None for as many as there are records.
+    cells : number of ranges of orientation that were examined.
+    examined : number of sets of four contacts that were examined; None for the number of records.
     """
 
     complete: bool
@@ -95,14 +95,15 @@ def list_result(
     threads: int = 1,
     is_part: bool = False,
 ) -> Result:
-    """Decide, list once, rank and count the fixtures that an engine found; return the result.
+    """Decide the records that an engine found, and return the result: fixtures listed once, ranked and
+    counted.
 
     Parameters
     ----------
-    records : (N, 19) arrays of fixtures, laid out as ``kernels.contact.record`` says.
+    records : (N, 19) arrays of fixtures, see ``kernels.contact.record`` for their layout.
     progress : called as ``progress(fraction done, records that still may be fixtures)``.
     cancel : when set, records that need slow methods are left undecided, and the result is incomplete.
-    threads : how many threads share the deciding.
+    threads : number of threads for deciding.
     is_part : whether the result is joined with others before ranking; then it lists more than the query's
         ``best``.
     """
@@ -223,7 +224,7 @@ class RankedTable:
     Parameters
     ----------
     query : the query.
-    problem : problem of one direction of the clamp; only what all directions have in common is used.
+    problem : problem of one direction of the clamp; only data common to all directions are used.
     waiting : tables not yet measured.
     has_dropped : whether fixtures were skipped uncounted since they cannot be among the best.
     """
@@ -255,8 +256,8 @@ class RankedTable:
             self.measure()
 
     def measure(self) -> None:
-        """Measure and count the fixtures that wait; where only the best are
-        asked for, keep those that may be among them.
+        """Measure and count the waiting fixtures; if only the best are asked for, keep those that may be
+        among them.
         """
         if not self.waiting:
             return
@@ -384,7 +385,7 @@ def join_ways(results: Sequence[Result], query: Query) -> Result:
 def join_notes(results: Sequence[Result], query: Query) -> Iterator[Note]:
     """Yield the notes of a joined result: those of its parts, and one on undecided candidates or no fixture.
 
-    Where the parts give several reasons for having no fixture, the reason of the latest stage is chosen.
+    If the parts give several reasons for having no fixture, the reason of the latest stage is chosen.
     """
     proofs = [result.proof for result in results if result.proof is not None]
     verified, undecided = (

@@ -1,14 +1,14 @@
 """An external sort of rows too many for memory: runs are sorted, kept on disk, and merged part by part.
 
 Reference: D. E. Knuth, *The Art of Computer Programming* 3 (1998), section 5.4; runs are cut at the same keys
-instead of being merged row by row, which array operations do better.
+instead of being merged row by row, because array operations are faster.
 
 Glossary
 --------
 key : a byte string for each row; rows are ordered by comparing their keys. Rows with equal keys stay in the
     order in which they were added.
 run : rows in the order of their keys.
-part : all rows, of whatever run, whose keys lie between two given keys.
+part : all rows of all runs whose keys lie between two given keys.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def sort_keys(keys: Keys) -> NDArray[np.intp]:
     """Return the indices (N,) that sort keys; equal keys keep their order.
 
     For speed the words of the keys are combined into one integer, each word as its distance from the least
-    word or, where that takes too many bits, as its rank; the index is in the lowest bits.
+    word or, if that takes too many bits, as its rank; the index is in the lowest bits.
     """
     count = max(len(keys), 1)
     number, size = np.zeros(len(keys), np.uint64), 1
@@ -135,7 +135,7 @@ class SortedRun:
         return self.keys[::STRIDE]
 
     def count_before(self, key: Keys) -> int:
-        """Return how many rows have smaller keys than ``key`` (1,)."""
+        """Return the number of rows with keys smaller than ``key`` (1,)."""
         return int(np.searchsorted(self.keys, key)[0])
 
     def read_rows(self, first: int, end: int) -> SortedRun:
@@ -212,7 +212,7 @@ class StoredRun:
         return np.frombuffer(content, form).reshape(end - first, *shape)
 
     def count_before(self, key: Keys) -> int:
-        """Return how many rows have smaller keys than ``key`` (1,)."""
+        """Return the number of rows with keys smaller than ``key`` (1,)."""
         first = STRIDE * max(int(np.searchsorted(self.some_keys, key)[0]) - 1, 0)
         return first + int(
             np.searchsorted(self.read_array(0, first, min(first + STRIDE, self.count)), key)[0]

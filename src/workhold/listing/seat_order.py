@@ -220,15 +220,15 @@ def mask_members(numbers: IntArray, few: IntArray) -> BoolArray:
 
 
 def number_seats(records: Array, problem: Problem) -> tuple[IntArray, Array, Array, Array, Array, BoolArray]:
-    """Return six arrays (N,) that identify the seat of each contact
-    (N, 19), whatever the direction of its clamp.
+    """Return six arrays (N,) that identify the seat of each contact (N, 19), regardless of the direction of
+    its clamp.
 
     Returns
     -------
     holes : a hash of the locators' holes, the same wherever they are on the plate.
     theta : orientation in radians, counted from ``START``.
     turn : error bound of ``theta`` in radians.
-    place : a number in mm that stands for the place of the part relative to the holes.
+    place : a number in mm that identifies the place of the part relative to the holes.
     off : error bound of ``place`` in mm.
     holds : whether the locators may hold the part.
     """
@@ -248,9 +248,9 @@ def number_seats(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
 def bound_places_off(records: Array, problem: Problem) -> Array:
     """Return error bounds of the locators' centres in contacts (N, 19), in mm, (N,); inf where not known.
 
-    A record has one bound for all its pegs, which is poor where the clamp grazes an arc; but the locators
-    alone fix the part. If the centres are within r of their true places, each is off the tangent by at most
-    r^2 (1/R + 1/L) plus its residual; R is the arc's radius, L the length that moments are divided by. So the
+    A record has one bound for all its pegs, which is poor if the clamp grazes an arc; but the locators alone
+    fix the part. If the centres are within r of their true places, each is off the tangent by at most r^2
+    (1/R + 1/L) plus its residual; R is the arc's radius, L the length that moments are divided by. So the
     part is off by this times the inverse of the locators' wrenches, which is a smaller r.
     """
     turn = np.where(records[:, record.STANDING] < 0, inf, records[:, record.REACH] * problem.wrench_length)
@@ -339,7 +339,7 @@ def bound_figures(
     """Return figures of quality (N, F) at least as good as those of
     any fixture with the locators of each record.
 
-    The location error is NaN where no bound is known. ``off`` and ``pairs`` are as in :func:`bound_keys`.
+    The location error is NaN if no bound is known. ``off`` and ``pairs`` are as in :func:`bound_keys`.
     """
     touched = TouchableFeatures.from_workpiece(
         problem.workpiece, problem.toolkit, problem.loci, problem.wrench_length

@@ -216,7 +216,7 @@ class ClampedSeats:
     Parameters
     ----------
     query : the query, in a toolkit with two clamps.
-    problem : problem of one direction of the clamps; only what all directions have in common is used.
+    problem : problem of one direction of the clamps; only data common to all directions are used.
     is_limited : whether only fixtures without a warning are of interest.
     looked_at : number of seats examined.
     seats : number of combinations of a seat and a pair of directions in which two clamps hold the part.
@@ -263,7 +263,7 @@ class ClampedSeats:
         return ((seats.theta < pi - SAME_POSE) | (not self.turns_half)).astype(np.int64)
 
     def count_fixtures(self, seats: Seats) -> int:
-        """Return how many listed fixtures the seats have; pairs whose closure is undecided count as well."""
+        """Return the number of listed fixtures of the seats; pairs whose closure is undecided count as well."""
         every = self.query.listing == "all"
         rows = list_pairs(seats.spans, self.mark_paired_seats(seats), seats.clamps, self.hardware, every)
         if every:
@@ -271,8 +271,8 @@ class ClampedSeats:
         return self.count_held_seats(rows)
 
     def count_held_seats(self, rows: Array) -> int:
-        """Return how many different combinations of seat and pair of
-        directions some pairs of clamps (N, 10) have.
+        """Return the number of different combinations of seat and pair of directions among pairs of clamps
+        (N, 10).
         """
         return len(np.unique(rows[:, SEAT] * len(self.toolkit.arrangements) + rows[:, KIND]))
 

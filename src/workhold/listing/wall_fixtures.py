@@ -154,7 +154,7 @@ def make_wall_table(found: WallFixtures, hole: IntArray, problem: Problem) -> Fi
 
 
 def place_on_wall(found: WallFixtures, problem: Problem) -> FixtureTable:
-    """Return the table of those fixtures whose clamps have a place, each fixture once."""
+    """Return the table of the fixtures whose clamps have a place, each fixture once."""
     found = found.list_each_once()
     hole, fits = found.make_clamp_placement(problem).find_nearest_holes(problem)
     return make_wall_table(found.take(fits), hole[fits], problem)

@@ -2,9 +2,9 @@
 
 A GLB file and a STEP assembly show the same bodies, in the same places and colours, see ``model.bodies``.
 
-A solid of build123d or CadQuery becomes a workpiece, a fixture an assembly. Both libraries wrap shapes
-of Open CASCADE, so nothing goes through a file. An assembly stands in the frame of the toolkit, or about the
-part where it lies in its own model.
+A solid of build123d or CadQuery becomes a workpiece, a fixture an assembly. Both libraries wrap shapes of
+Open CASCADE, so nothing goes through a file. An assembly is in the frame of the toolkit, or placed around the
+part in the part's own model.
 """
 
 from __future__ import annotations

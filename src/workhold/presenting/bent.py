@@ -67,7 +67,7 @@ def find_pads_below(
 ) -> PadsBelow:
     """Return the pads and the clamp on top of the set with rank ``best``, from 1, of three supports.
 
-    ``clamp_force`` is in N; None takes the force that the set needs. Raises InputError where there is no such
+    ``clamp_force`` is in N; None takes the force that the set needs. Raises InputError if there is no such
     set.
     """
     if not 1 <= best <= len(supports.triples):
@@ -83,7 +83,7 @@ def find_pads_below(
 def find_top_over(shape: PartShape, x: float, y: float) -> float:
     """Return the height in mm of the highest face over (x, y) in the part's frame.
 
-    Raises InputError where no face is over the point.
+    Raises InputError if no face is over the point.
     """
     a, b, c = np.moveaxis(shape.positions[shape.triangles], 1, 0)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -215,12 +215,12 @@ def find_sheet_bending(
 def compute_sheet_bending(
     fixture: Fixture, settings: dict[str, Any], shape: PartShape | None
 ) -> Bending | None:
-    """Return how far a fixture bends its part, for its setup sheet; None where the settings name no material.
+    """Return how far a fixture bends its part, for its setup sheet; None if the settings name no material.
 
     Parameters
     ----------
     settings : the fields of a :class:`workhold.asking.sheet.SheetQuestion`.
-    shape : of the part, as its own file has it; None where a prism stands for it.
+    shape : shape of the part from its own file; None to use a prism.
     """
     if settings.get("material") is None:
         return None

@@ -1,9 +1,9 @@
-"""A simulated closing of a fixture: the part starts a little off its place, and the closing jaws bring it
-home.
+"""A simulated closing of a fixture: the part starts slightly off its place, and the closing jaws bring it
+into its place.
 
-How far off it starts depends on the cage, the poses from which it still settles (``model.seating``). Where
-the seating cannot be computed, or the cage is too small to see, the part stays in its place and only what
-moves is shown.
+The starting distance depends on the cage, the poses from which the part still settles (``model.seating``). If
+the seating cannot be computed, or the cage is too small to see, the part stays in its place and only the jaw
+or clamp moves.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ MOST_KEYFRAMES = 120
 def show_closing(picture: LivePicture) -> dict[str, Any]:
     """Return the closing of a picture's fixture as keyframes and words, plain data for the browser.
 
-    Where no motion of the part can be shown, only the moving carrier moves, and the words say why.
+    If no motion of the part can be shown, only the moving carrier moves, and the words say why.
     """
     fixture, toolkit = picture.fixture, picture.result.toolkit
     if not toolkit.closes_at_once:
@@ -84,8 +84,8 @@ def close_fixture(picture: LivePicture, solver: SeatingSolver, seating: Seating)
 
 
 def list_starts(picture: LivePicture, fixture: Fixture, seating: Seating) -> Iterator[Pose]:
-    """Yield start poses within the cage, each nearer to the fixture's pose than the one before; the last is
-    this pose.
+    """Yield start poses within the cage, each nearer to the fixture's pose than the previous one; the last is
+    the fixture's pose itself.
     """
     middle, cage = picture.result.workpiece.center, seating.cage
     turns, shifts = (-ANY_TURN, ANY_TURN), (0.0, 0.0)

@@ -1,9 +1,9 @@
 """Fixtures and results as plain data for JSON, and all fixtures of a result as a table of pandas or Arrow.
 
 Lengths are in mm, angles in degrees, forces in N. A number that JSON does not have, such as an infinite
-force, is None. The page has answers of its own (``web.answers``), which also say where everything is
-drawn. A table has the columns of the CSV form and a row for each fixture; pandas and Arrow are needed for
-nothing else, and are imported only there.
+force, is None. The page has separate answers (``web.answers``), which also have coordinates for drawing. A
+table has the columns of the CSV form and a row for each fixture; only tables need pandas and Arrow, which are
+imported then.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def describe_part(workpiece: Workpiece, remarks: Sequence[str] = ()) -> dict[str
 
 
 def describe_solid(solid: SolidOutline | None) -> dict[str, Any]:
-    """Return {"solid": ...} for a part read from a solid: how it stands and the heights at each segment;
+    """Return {"solid": ...} for a part read from a solid: its position and the heights at each segment;
     otherwise {}.
     """
     return {} if solid is None else {"solid": asdict(solid, filter=exclude(fields(SolidOutline).low))}
@@ -196,7 +196,7 @@ def name_carrier(carrier: Carrier) -> str:
 
 
 def describe_by_hand(fixture: Fixture, rank: int | None) -> dict[str, Any]:
-    """Return as plain data how the part is put between two clamps by hand.
+    """Return as plain data the steps of putting the part between two clamps by hand.
 
     Returns {} unless the query asked for the seating of the fixture with this rank.
     """
@@ -223,7 +223,7 @@ def describe_load_case(case: LoadCase) -> dict[str, Any]:
 
 
 def describe_worst(worst: WorstLoad) -> dict[str, Any]:
-    """Return as plain data where and in which direction a load is worst; its peg is an index from 0."""
+    """Return as plain data the point and direction at which a load is worst; its peg is an index from 0."""
     x, y = worst.point
     return {
         "value": convert_finite(worst.value),
@@ -321,7 +321,7 @@ def describe_toolkit(loaded: LoadedToolkit) -> dict[str, Any]:
 
 
 def describe_explored(found: Iterable[ToolkitOutcome]) -> list[dict[str, Any]]:
-    """Return as plain data how well each of several toolkits holds a part."""
+    """Return as plain data the outcomes of several toolkits for a part."""
     return [
         {
             "name": item.name,
@@ -338,7 +338,7 @@ def describe_explored(found: Iterable[ToolkitOutcome]) -> list[dict[str, Any]]:
 
 
 def describe_verification(outcome: Verification) -> dict[str, Any]:
-    """Return what was proven of a result as plain data; fixtures are named by rank, from 1."""
+    """Return the outcome of a verification as plain data; fixtures are named by rank, from 1."""
     return {
         "holds": outcome.holds,
         "fixtures": outcome.fixtures,

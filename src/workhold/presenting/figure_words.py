@@ -77,7 +77,7 @@ def make_fixture_title(fixture: Fixture) -> str:
 
 
 def make_short_heading(figure: Figure, unit: Unit) -> str:
-    """Return a column heading: a figure's name, shortened where it is too wide, and the unit's sign."""
+    """Return a column heading: a figure's name, shortened if it is too wide, and the unit's sign."""
     return f"{SHORT.get(figure.key, figure.words)} {find_figure_unit(figure, unit)}".rstrip()
 
 
@@ -132,19 +132,19 @@ def format_rounded(value: float, decimals: int) -> str:
 
 
 def find_edgeless_distance(workpiece: Workpiece, toolkit: Toolkit) -> float:
-    """Return the length in mm that the figure ``edge_distance`` has where no contact has an edge."""
+    """Return the length in mm that the figure ``edge_distance`` has when no contact has an edge."""
     from workhold.statics.contact_matrix import compute_wrench_length
 
     return compute_wrench_length(workpiece, toolkit)
 
 
 def mark_edgeless(figures: Mapping[str, float], longest: float) -> dict[str, float]:
-    """Return the figures by key, with inf as the edge distance where no contact has an edge.
+    """Return the figures by key, with inf as the edge distance if no contact has an edge.
 
     Parameters
     ----------
-    longest : the length in mm that stands for no edge, see :func:`find_edgeless_distance`; no true distance
-        is as long.
+    longest : the length in mm that denotes no edge, see :func:`find_edgeless_distance`; no true distance is
+        as long.
     """
     return {**figures, EDGE: inf} if is_edgeless(figures, longest) else dict(figures)
 

@@ -15,15 +15,15 @@ __all__ = ["make_freecad_settings"]
 
 
 def make_freecad_settings(fixture: Fixture, jaws: JawPair | None) -> dict[str, float]:
-    """Return the variables of FreeCAD's vise by name, and where the part lies in it: X, Y, Z and Angle.
+    """Return the variables of FreeCAD's vise by name, and the pose of the part in it: X, Y, Z and Angle.
 
-    All are in mm, the angle in degrees. X, Y and Z are where the origin of the part's drawing lies, at the height
-    of the lower side of what the jaws hold. A length that the vise does not state is left out.
+    All are in mm, the angle in degrees. X, Y and Z are the place of the origin of the part's drawing, at the
+    height of the lower side of the clamped body. A length that the vise does not state is left out.
 
     Raises
     ------
     InputError
-        For a fixture that two flat jaws do not hold, and for a vise that does not state how high its jaws are.
+        For a fixture that is not held by two flat jaws, and for a vise without a stated jaw height.
     """
     hold = fixture.hold
     if jaws is None or not isinstance(hold, JawHold):

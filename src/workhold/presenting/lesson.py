@@ -1,13 +1,13 @@
-"""A lesson: what the page that explains the method shows of one part, as plain data.
+"""A lesson: the data of one part for the page that explains the method.
 
 Glossary
 --------
 lesson : a part with its contact features, and its Type I fixtures whose pegs stand on chord curves.
-shown fixture : the one that the page's pictures are about; both of its chords have room to slide.
+shown fixture : the fixture in the page's pictures; both of its chords have room to slide.
 
-The vise of a lesson is chosen for the part, with few holes under it, so that a picture shows them all.
-Everything stands in the part's own coordinates but for pegs, which stand in the vise's. Lengths are in mm,
-angles in radians unless a name says degrees.
+The vise of a lesson is chosen for the part, with few holes under it, so that a picture shows them all. All
+data are in the part's own coordinates, except pegs, which are in the vise's. Lengths are in mm, angles in
+radians unless a name says degrees.
 """
 
 from __future__ import annotations
@@ -74,10 +74,10 @@ class ChordRange:
 
     Parameters
     ----------
-    tail, head : numbers of the features that its first and its last peg touch.
+    tail, head : numbers of the features touched by its first and its last peg.
     swapped : whether the chord's tail is the second peg of the pair rather than the first.
     shift, length : direction in radians and length in mm of the step between the holes.
-    branch : which of two chords it is, 1 or -1.
+    branch : 1 or -1, to select one of two chords.
     low, high : least and greatest orientation psi in radians, an interval around that of the fixture.
     """
 
@@ -93,9 +93,7 @@ class ChordRange:
 
 @frozen
 class CurveFixture:
-    """A Type I fixture on two chord curves; its chords are those of its first and of
-    its second pair of pegs.
-    """
+    """A Type I fixture on two chord curves, with the chord of its first pair of pegs and of its second pair."""
 
     fixture: Fixture
     rank: int
@@ -180,8 +178,8 @@ def round_to_two_digits(length: float) -> float:
 
 
 def find_fixtures_on_curves(problem: Problem, result: Result) -> list[CurveFixture]:
-    """Return those fixtures of a result whose two pairs of pegs both stand on
-    chord curves, in the result's order.
+    """Return the fixtures of a result whose two pairs of pegs both stand on chord curves, in the result's
+    order.
     """
     frame = problem.frame
     steps = list_lattice_steps(frame.carriers, problem.diameter)
@@ -203,7 +201,7 @@ def find_chord_range(
 ) -> ChordRange | None:
     """Return the chord on which two pegs of a fixture stand.
 
-    Returns None where they stand on a pair of features along which they can slide, or in reverse order.
+    Returns None if they are on a pair of features along which they can slide, or in reverse order.
     """
     tail, head = pegs
     inverse, center = fixture.pose.inverse, problem.workpiece.center
@@ -229,7 +227,7 @@ def find_chord_range(
 
 
 def find_feature(problem: Problem, face: int, place: tuple[float, float]) -> int:
-    """Return the number of that feature of a face on which a peg's centre lies.
+    """Return the number of the feature of a face on which a peg's centre lies.
 
     If the centre lies on several, it is the feature whose ends are farthest away. ``place`` is the peg's
     centre in mm, relative to the centre of the part's bounding box.

@@ -1,12 +1,13 @@
-"""One fixture as a picture that can be pushed and closed: what moves stands in groups of its own.
+"""One fixture as an interactive picture, in which the part can be pushed and the jaws closed: moving elements
+are in separate groups.
 
-Supports under it, and the clamp on top, are drawn where they are asked for.
+Supports under it, and the clamp on top, are drawn if requested.
 
 Glossary
 --------
-push : a force on the part that is tried out, at a point of the part.
-keyframe : one moment of closing: how far the part is turned, in degrees, and shifted, in page units, and by
-    how many mm what moves is open.
+push : a trial force at a point of the part.
+keyframe : one moment of closing: the part's turn in degrees and shift in page units, and the opening of the
+    jaw or clamp in mm.
 """
 
 from __future__ import annotations
@@ -153,7 +154,7 @@ class LivePicture:
 
     @property
     def title(self) -> str:
-        """The fixture's name, how it holds, and the lengths to set, in words."""
+        """The fixture's name, its kind of hold, and the lengths to set, in words."""
         toolkit = self.result.toolkit
         set_to = ", ".join(
             f"{one.sign} = {MILLIMETRE.format_length(one.length)}"
@@ -199,8 +200,7 @@ class LivePicture:
         """Draw a set of three supports with the names of its holes; each support moves with the jaw on which
         it stands.
 
-        ``ways`` holds by carrier name the direction in which the carrier clamps, None for a carrier that
-        stands still.
+        ``ways`` has, by carrier name, the direction in which the carrier clamps, or None for a fixed carrier.
         """
         planned, view = PlannedSupports.from_chosen(chosen), self.view
         corners, radius = (
@@ -217,7 +217,8 @@ class LivePicture:
     def write_name(self, scene: Scene, number: int) -> None:
         """Write the name of the hole of peg ``number``, an index from 0, beside the peg.
 
-        The name stands away from the part and within the page; that of a clamp beside the clamp's body.
+        The name is placed away from the part and within the page; the name of a clamp is beside the clamp's
+        body.
         """
         peg, (_, (nx, ny)) = self.fixture.pegs[number], self.bench.contacts[number]
         (x, y), radius = self.view((peg.x, peg.y)), self.bench.get_page_radius(self.view, number)
@@ -253,12 +254,12 @@ class LivePicture:
         return TriedForce(float(at[0]), float(at[1]), size, turn % 360.0)
 
     def answer(self, push: TriedForce, jaw_force: float | None, jaw: str | float) -> dict[str, Any]:
-        """Return as plain data what a force does: contact forces as arrows and shares, whether the fixture
-        holds, and words.
+        """Return as plain data the effect of a force: contact forces as arrows and shares, whether the
+        fixture holds, and words.
 
         Parameters
         ----------
-        jaw_force : force in N with which the moving carrier presses; None for as much as is needed.
+        jaw_force : force in N with which the moving carrier presses; None for the force that is needed.
         jaw : as in :func:`workhold.statics.loads.load_cases`.
 
         Raises

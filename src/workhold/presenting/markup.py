@@ -1,8 +1,8 @@
-"""Tables and pictures as HTML that a notebook shows, also one that is not trusted.
+"""Tables and pictures as HTML for notebooks, trusted or not.
 
-A picture is an image whose address holds its SVG: its ids meet no others, and nothing in it runs. Its own
-white ground serves a dark page as well as a light one. Sanitizers that take SVG out of HTML leave it alone.
-There are no colours and no scripts, so those of the page hold for all that is written.
+A picture is an image whose address contains its SVG: its ids cannot collide with others, and scripts in it do
+not run. Its white background suits dark and light pages. Sanitizers that remove SVG from HTML do not remove
+it. The HTML has no colours and no scripts of its own, so those of the page apply.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def make_paragraph(*pieces: str) -> Markup:
 
 
 def make_table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Markup:
-    """Return an HTML table; a column whose heading begins with ``>`` is aligned right, all others left.
+    """Return an HTML table; columns whose heading begins with ``>`` are aligned right, all others left.
 
     The sign is not shown. The alignment is given twice, because some sanitizers remove styles and some pages
     override attributes.

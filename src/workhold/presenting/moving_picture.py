@@ -1,8 +1,8 @@
-"""What the pictures that are pushed and closed have in common: what moves stands in groups of its own.
+"""Common parts of interactive pictures: moving elements are in separate groups.
 
-A group of the class ``moves`` says in ``data-way`` in which direction of the page it clamps, in page units for
-each mm, and in ``data-most`` how far in mm it can be drawn back. A clamp that is bolted to a plate stays there,
-and its bars grow as its tip goes out.
+A group of the class ``moves`` has two attributes: ``data-way`` is its clamping direction on the page, in page
+units per mm, and ``data-most`` the distance in mm by which it can be drawn back. A clamp that is bolted to a
+plate stays there, and its bars lengthen as its tip moves out.
 """
 
 from __future__ import annotations

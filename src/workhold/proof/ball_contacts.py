@@ -64,10 +64,10 @@ class CandidateBox:
     Parameters
     ----------
     features : four rows of ``geometry.segment.make_segment_rows``, each with the slack of both ends.
-    offsets : places (x, y) of the four pegs in mm from the first peg, without the separation.
-    standing : how many of the pegs, the first ones, are on the carrier that stands still.
+    offsets : places (x, y) of the four pegs in mm relative to the first peg, without the separation.
+    standing : number of pegs on the fixed carrier; these are the first ones.
     middle : psi in radians, tail x, tail y and separation in mm.
-    reach : how far each may be off.
+    reach : error bound of each.
     """
 
     features: Sequence[Sequence[float]]
@@ -182,10 +182,9 @@ def place_contacts(box: CandidateBox, unknowns: Sequence[arb]) -> BoxContacts:
 def compute_slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], limits: Limits) -> list[arb]:
     """Return the numbers that must all be positive for a fixture, as balls.
 
-    Two cases: (a) in general they belong to ends, gap, span, closure and clamping, for the sign of the forces
-    that makes them larger; (b) for one of two clamps (``limits.pairing``) they belong to ends and gap, the
-    determinant of the standing pegs' wrenches, and the clamp's push. ``minors`` are those of
-    :func:`compute_wrench_minors`.
+    They belong to ends, gap, span, closure and clamping, with the sign of the forces that makes them larger.
+    For one of two clamps (``limits.pairing``) they belong to ends and gap, the determinant of the fixed pegs'
+    wrenches, and the clamp's push. ``minors`` are those of :func:`compute_wrench_minors`.
     """
     out = [
         slack
@@ -219,10 +218,10 @@ def compute_slacks(box: CandidateBox, here: BoxContacts, minors: Sequence[arb], 
 
 
 def compute_end_slacks(row: Sequence[float], ray: tuple[arb, arb], margin: float) -> list[arb]:
-    """Return how far a contact is inside the high and the low end of its feature, beyond ``margin``, as balls
-    in mm.
+    """Return how far in mm, as balls, a contact is inside the high and the low end of its feature, beyond
+    ``margin``.
 
-    Negative where it breaks the rule of ends. Return an empty list for a whole circle. ``ray`` is the peg's
+    Negative if it breaks the rule of ends. Return an empty list for a whole circle. ``ray`` is the peg's
     centre as :func:`measure_from_origin` returns it.
     """
     dx, dy = ray

@@ -1,12 +1,12 @@
 """Deciding which records are fixtures: in double precision where that is enough, else in ball arithmetic.
 
-A record holds where four contacts are and how far the exact ones may be from there. It goes through up to
-four stages, and leaves with the first that decides it:
+A record has the places of four contacts, with error bounds. It goes through up to four stages, until one of
+them decides it:
 
 1. a certificate of its solution (``kernels.proof.newton_kantorovich``), with all rules decided by enclosures;
-2. the same for the features' rows as they are, without what rounding may have done to the drawing before;
+2. the same for the features' rows as exact numbers, ignoring that the drawing may have been rounded before;
 3. the interval Newton method in double precision (``kernels.proof.interval_newton``): boxes in which no
-   fixture can be are dropped, and those with exactly one solution go through stage 2;
+  fixture can be are dropped, and those with exactly one solution go through stage 2;
 4. the same method in ball arithmetic (``interval_newton``).
 """
 
@@ -59,13 +59,13 @@ GRACE = 0.5
 
 @define(eq=False)
 class DecidingProgress:
-    """The progress of deciding records, and whether it is to stop; shared by threads.
+    """The progress of deciding records, with a flag to stop; shared by threads.
 
     Parameters
     ----------
     total : number of records to decide.
     progress : called with the fraction done and the number of records that still may be fixtures.
-    cancel : when set, stages that take long are left out, and after ``GRACE`` seconds all others.
+    cancel : when set, slow stages are skipped, and after ``GRACE`` seconds all others too.
     """
 
     total: int
@@ -91,7 +91,7 @@ class DecidingProgress:
         return self.is_stopped and perf_counter() >= self.deadline
 
     def give_up(self) -> None:
-        """Stop at once: nobody waits for the result."""
+        """Stop at once, because the caller no longer waits for the result."""
         self.deadline = 0.0
 
     def advance(self, done: int, kept: int) -> None:
@@ -116,11 +116,11 @@ class SearchReport:
 
     Parameters
     ----------
-    records : number of records decided or undecided, without those left.
+    records : number of records examined, decided or undecided, without those in ``left``.
     verified : number of proven fixtures.
-    escalated : number of records that the first certificate left open, including those given up.
+    escalated : number of records that the first certificate did not decide, including those in ``given_up``.
     given_up : number of pairs of chords whose crossings the engine did not find.
-    undecided : candidates that stayed undecided.
+    undecided : candidates that remain undecided.
     left : number of records not decided when the work was stopped.
     """
 
@@ -143,8 +143,7 @@ class SearchReport:
 
 
 def is_standing(standing: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return a mask (N, 4) of the pegs on the carrier that stands still: of each four pegs, the first
-    ``standing`` (N,)."""
+    """Return a mask (N, 4) of the pegs on the fixed carrier: the first ``standing`` (N,) of each four pegs."""
     return np.arange(4) < standing[:, None]
 
 
@@ -168,8 +167,7 @@ def compute_peg_places(row: Array, lattice: Lattice) -> list[tuple[float, float]
 
 
 def bound_box(records: Array, length: float) -> Array:
-    """Return bounds (N, 4) in mm of how far the exact unknowns of each record may be from those in the
-    record.
+    """Return bounds (N, 4) in mm of the distance of the exact unknowns from those of each record.
 
     The unknowns are (L psi, tail x, tail y, separation); ``length`` is L in mm, by which moments are divided.
     """
@@ -241,8 +239,8 @@ def list_clearances(problem: Problem, setting: Setting) -> list[tuple[Array, Set
     """Return pairs (outline, setting) to test the pegs' clearance with, one for each outline (S, 10) that
     carriers meet.
 
-    Two cases: (a) both carriers meet the same outline: one pair with the given setting; (b) else two pairs,
-    in which the peg radius of the carrier that does not meet the outline is -inf.
+    If both carriers meet the same outline, there is one pair with the given setting. Else there are two, each
+    with the peg radius -inf for the carrier that does not meet the outline.
     """
     one, other = problem.outlines
     if one is other:

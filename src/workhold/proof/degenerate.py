@@ -1,10 +1,10 @@
-r"""Contacts that hold nothing wherever they are, recognized by what they touch and by their pegs' holes.
+r"""Contacts that can never hold a part, recognized by their features and their pegs' holes.
 
 Four wrenches close only if every three of them are independent (``kernels.contact.rules``). With two clamps
-the wrenches of the three standing pegs must be independent. Where lengths of a part and of a lattice agree
-exactly, some three are dependent in the only place where they can touch. Such a place is a double root of the
-contact equations or one of a continuum of solutions. What the rounding of a drawing makes of it takes long to
-decide, and means nothing. Each family is a theorem:
+the wrenches of the three standing pegs must be independent. If lengths of a part and of a lattice agree
+exactly, some three wrenches are dependent in the only place where the pegs can touch. Such a place is a
+double root of the contact equations or one of a continuum of solutions. After the rounding of a drawing it
+takes long to decide, and the decision is meaningless. Each family is a theorem:
 
 parallels : on three parallel lines all normals are parallel.
 centre : on three arcs about one centre all normals pass through it.

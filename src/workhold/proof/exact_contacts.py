@@ -1,15 +1,16 @@
-"""Rows of contact features and reactions of locators in ball arithmetic, where doubles are not enough.
+"""Rows of contact features and reactions of locators in ball arithmetic, for cases in which doubles are too
+coarse.
 
 A *ball* is a number of python-flint given as a midpoint and a radius: it encloses the exact number.
 
-Rows are made from the drawing's vertices and bulges. A row in doubles is off by the last digit of a radius or
-a direction. Where a peg nearly grazes an arc, only a share p of its normal pushes: the error, divided by p,
-turns the normal, and divided by p squared it changes forces per unit of the clamp's own force.
+Rows are made from the drawing's vertices and bulges. In doubles, the last digit of a row's radius or
+direction is uncertain. If a peg nearly grazes an arc, only a share p of its normal force pushes: the error
+divided by p turns the normal, and divided by p squared it changes forces per unit of the clamp's own force.
 
-Whether two clamps close is often a matter of an exact zero, as where a clamp's line of force passes through
-the point in which the lines of two locators meet. Rounding a drawing's numbers once more leaves such a zero
-far below what decides. The place of a clamp that nearly grazes an arc, and so the share of its force that
-pushes, is off by rounding over that share.
+Whether two clamps close often depends on an exact zero, for example if a clamp's line of force passes through
+the point in which the lines of two locators meet. Another rounding of a drawing's numbers changes such a zero
+by far less than the decision threshold. The place of a clamp that nearly grazes an arc, and so the share of
+its force that pushes, has an error of rounding divided by that share.
 """
 
 from __future__ import annotations
@@ -151,8 +152,8 @@ class SharpReactions:
 def bound_reactions(box: CandidateBox, limits: Limits) -> SharpReactions | None:
     """Return the reactions at the one solution of a box of three locators and a clamp.
 
-    Return None where it is not proven that the box has exactly one solution. Precision rises until the
-    reactions are known to the last digit of a double; the lowest precision is mostly enough.
+    Return None if it is not proven that the box has exactly one solution. Precision rises until the reactions
+    are known to the last digit of a double; the lowest precision is usually enough.
     """
     sharp = None
     for bits in PRECISIONS:

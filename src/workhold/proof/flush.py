@@ -1,16 +1,16 @@
 """Whether two pegs press a part that lies flush on a wall, decided in ball arithmetic (midpoint and radius).
 
-The pegs are a locator and a clamp, or two pegs of one lattice. Everything is derived once more from the hull
-edge's corners and arcs, the outline's vertices and bulges and the lattice. Their doubles are taken as exact
-numbers, and balls get as many digits as the decision takes. An arc's centre rounded once would not do: where
-a row grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
+The pegs are a locator and a clamp, or two pegs of one lattice. Everything is computed again from the hull
+edge's corners and arcs, the outline's vertices and bulges, and the lattice. Their doubles are taken as exact
+numbers, and balls get as many digits as the decision needs. A rounded centre of an arc would be too coarse:
+for a row that grazes an arc, 5e-16 mm move the contact by 7e-8 mm.
 
 Glossary
 --------
 contacts : the hull edge's length in mm, and the contact of both pegs: the peg's centre, the outward normal
-    there, and how far in mm the contact is inside the rule of both ends of its feature. Places are along the
-    hull edge from its start, and above the hull edge.
-branch : -1 or 1, which of two places on an arc, or of two crossings, a contact is at.
+    there, and the distance in mm by which the contact keeps the rule of both ends of its feature. Places are
+    measured along the hull edge from its start, and above the hull edge.
+branch : -1 or 1, to select one of two places on an arc, or one of two crossings.
 """
 
 from __future__ import annotations
@@ -124,12 +124,12 @@ def list_middles(values: Sequence[arb]) -> list[float]:
 def is_pressing(
     candidate: WallCandidate, problem: Problem, plate: Carrier, push: tuple[float, float]
 ) -> bool | None:
-    """Return whether a candidate presses the part with contacts
-    inside their features; None where that stays undecided.
+    """Return whether a candidate presses the part with contacts inside their features; None if that stays
+    undecided.
 
     Parameters
     ----------
-    plate : in whose holes the locator stands.
+    plate : plate in whose holes the locator stands.
     push : unit vector along which the clamp moves as it clamps, in the wall's frame.
     """
     with BALLS:
@@ -392,9 +392,8 @@ class BallFeature:
         """Return the contact of a peg in a line of holes with the feature; None where the line misses the
         feature.
 
-        Two cases: (a) not ``upright``: the line is a row at the height ``level`` in mm; (b) ``upright``: it
-        is a column at ``level`` along the hull edge. ``branch`` (-1 or 1) selects one of two places on an
-        arc.
+        The line is a row at the height ``level`` in mm or, if ``upright``, a column at ``level`` along the
+        hull edge. ``branch`` (-1 or 1) selects one of two places on an arc.
         """
         across = 0 if upright else 1
         up = level - self.middle[across]

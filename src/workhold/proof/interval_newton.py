@@ -2,13 +2,13 @@
 
 A candidate is a box of the four unknowns (psi, tail x, tail y, separation) that holds the exact contact, if
 there is one. It is made smaller by two rules of one or two unknowns (``ball_contacts.narrow_box``), and by
-the contacts of three standing pegs alone (:func:`narrow_to_contacts`). These often fix the pose where the
-moving peg only grazes what it touches. Then the box is turned into the frame of ``proof.singular_frame``.
-There, boxes in which some contact equation has no zero, or in which some rule is broken everywhere, are
-dropped. The interval Newton method (Hansen and Sengupta) makes the others smaller. It shows that there is
-none or exactly one solution. What remains is cut in three. Where ``FEW_BOXES`` do not decide, all solutions
-are mostly on one curve, on which ``proof.solution_curve`` finds them. What is left after ``MOST_BOXES`` boxes
-stays undecided. Solutions are judged at rising precision.
+the contacts of three standing pegs alone (:func:`narrow_to_contacts`). These often fix the pose when the
+moving peg only grazes its feature. Then the box is turned into the frame of ``proof.singular_frame``. There,
+boxes in which some contact equation has no zero, or in which some rule is broken everywhere, are dropped. The
+interval Newton method (Hansen and Sengupta) makes the others smaller. It shows that there is none or exactly
+one solution. The remaining boxes are cut in three. If ``FEW_BOXES`` do not decide, all solutions are usually
+on one curve, on which ``proof.solution_curve`` finds them. Boxes left after ``MOST_BOXES`` stay undecided.
+Solutions are judged at rising precision.
 
 References: E. Hansen, S. Sengupta, "Bounding solutions of systems of equations using interval analysis",
 BIT 21 (1981) 203-211; F. Johansson, "Arb", IEEE Transactions on Computers 66 (2017) 1281-1292.
@@ -98,9 +98,9 @@ def narrow_to_contacts(box: CandidateBox, limits: Limits) -> CandidateBox | None
     """Return the part of a box in which three standing pegs and then the moving peg may touch; None for no
     part.
 
-    The equations of the standing pegs do not contain the separation. Each is first solved for each unknown,
-    which needs no inverse where the box is wide, and then all are combined by the inverse of their Jacobian
-    at its middle. Where that fixes the pose, the separation is cut in two again and again.
+    The equations of the standing pegs do not contain the separation. First each is solved for each unknown,
+    which needs no inverse for a wide box. Then all are combined by the inverse of their Jacobian at its
+    middle. If that fixes the pose, the separation is bisected repeatedly.
     """
     place = [arb(middle, reach) for middle, reach in zip(box.middle, box.reach, strict=True)]
     for _ in range(MOST_STEPS):

@@ -1,4 +1,4 @@
-r"""Certificates in double precision of which records of three locators are seats.
+r"""Certificates in double precision that records of three locators are seats.
 
 The unknowns are z = (L psi, x, y) in mm: the turn of the pegs in the part's frame, and the centre of the
 first peg. F are the three contact equations, distances from lines and circles, A an inverse of their
@@ -7,10 +7,9 @@ Jacobian, and
     eta >= \|A F(z)\|,   K >= \|second derivatives of F\|
 
 in the norm of the largest absolute row sum. When 2 \|A\| K eta < 1 there is exactly one solution within 1 /
-(\|A\| K) of z, and it lies within 2 eta (Newton-Kantorovich). The search states how far the exact contacts
-may be from those of a record: where that is no more than 1 / (\|A\| K), the solution is the one that the
-record stands for. A record for which this is not known, or for which the error bounds leave a rule open, is
-listed as undecided.
+(\|A\| K) of z, and it lies within 2 eta (Newton-Kantorovich). The search gives a bound of the distance of the
+exact contacts from those of a record. If it is at most 1 / (\|A\| K), the solution is the exact contact of
+the record. A record is listed as undecided if this is not known, or if the error bounds do not decide a rule.
 
 A seat alone fixes the pose, as a simple root: the determinant of its wrenches (n, q x n / L) is above
 ``LEAST_SEAT``.
@@ -144,11 +143,12 @@ class Solutions:
     Parameters
     ----------
     psi, point : as in :class:`SeatContacts`.
-    slack : (N, 7) how far in mm each of six ends is from breaking the rule of ends, and the determinant above
-        its least value; all positive for a seat.
+    slack : (N, 7) distance in mm by which the contacts keep the rule of ends, for each of six ends, then the
+        determinant minus its least value; all positive for a seat.
     off : (N, 7) error bounds of ``slack``.
-    is_certain : (N,) whether there is exactly one solution, that of the record.
-    is_double : (N,) whether every solution of the record is a double root, or nearly, and so no seat.
+    is_certain : (N,) whether there is exactly one solution, the exact contact of the record.
+    is_double : (N,) whether every solution of the record is a double root, or nearly one, and therefore no
+        seat.
     """
 
     psi: Array
@@ -228,7 +228,7 @@ def are_double(
 
     Parameters
     ----------
-    start, box : (N, 3) unknowns, and (N,) how far in mm the exact ones may be from there.
+    start, box : (N, 3) unknowns, and (N,) error bounds in mm.
     rate : (N,) change of the determinant per mm that a peg's centre moves.
     residual : (N,) error of the equations in mm.
     """

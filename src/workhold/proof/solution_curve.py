@@ -1,15 +1,15 @@
-"""Solutions of a box that lie on one curve, found in one unknown by Taylor's theorem.
+"""Solutions of a box that lie on one curve, found as roots in one unknown by Taylor's theorem.
 
 In the frame of a box's singular vectors (``proof.singular_frame``) three combined contact equations determine
-the first three coordinates q. The fourth coordinate t is determined badly. So q is a function of t, and what
-is left of the equations is f(t) = F_4(q(t), t) = 0 (the reduction of Lyapunov and Schmidt). About 0
+the first three coordinates q. The fourth coordinate t is determined badly. So q is a function of t, and the
+remaining equation is f(t) = F_4(q(t), t) = 0 (the reduction of Lyapunov and Schmidt). About 0
 
     f(t) = f_0 + f_1 t + ... + f_(n-1) t^(n-1) + r t^n
 
 where f_k is the derivative of order k over k!, at 0, and r is that of order n somewhere between 0 and t. The
 same holds for each entry of q. The derivatives are those of the implicit function, as power series, at a
-point or over the box at once in ball arithmetic. Roots that are double or triple but for rounding are so
-decided in some tens of parts of one unknown. Boxes of four unknowns take thousands.
+point or over the box at once in ball arithmetic. Thus roots that are double or triple up to rounding are
+decided with some tens of parts of one unknown, instead of thousands of boxes of four unknowns.
 
 References: M. Golubitsky, D. G. Schaeffer, *Singularities and Groups in Bifurcation Theory I*, Springer 1985,
 chapter VII (the reduction); K. Makino, M. Berz, "Taylor models and other validated functional inclusion
@@ -124,7 +124,7 @@ class SolutionCurve:
 
 @contextmanager
 def set_series_terms(count: int) -> Iterator[None]:
-    """Let python-flint's power series have ``count`` terms within a ``with`` block."""
+    """Limit python-flint's power series to ``count`` terms within a ``with`` block."""
     before, ctx.cap = ctx.cap, count
     try:
         yield
@@ -136,8 +136,8 @@ def find_roots_on_curve(frame: SingularFrame, limits: Limits) -> list[list[arb]]
     """Return parts of a box in the frame's coordinates, one for each solution that may be a fixture; each
     part has exactly one solution.
 
-    Return None where the three well determined coordinates are not shown to be a function of the fourth, or
-    where the fourth equation vanishes so nearly along it that ``MOST_PARTS`` parts do not decide.
+    Return None if it is not shown that the three well determined coordinates are a function of the fourth, or
+    if the fourth equation is so near zero along the curve that ``MOST_PARTS`` parts do not decide.
     """
     *well, t = frame.make_start_box()
     well, is_curve = bound_along_curve(frame, well, t)
