@@ -413,8 +413,7 @@ def make_table_row(one: Holding, titles: PageTitles) -> list[str]:
 
 
 def list_notes(holdings: Sequence[Holding], lengths: LengthUnit) -> Iterator[str]:
-    """Yield the notes below the table: on part zero, on signs, and on parts whose pegs are in other columns.
-    """
+    """Yield the notes below the table: on part zero, on signs, and on parts whose pegs are in other columns."""
     zeros = {one.member.zero.words for one in holdings}
     toolkit = holdings[0].member.query.toolkit
     first = "each part's zero" if len(zeros) > 1 else f"the {next(iter(zeros))}"
