@@ -48,7 +48,12 @@ PROPERTIES = (
         "Part",
         "The only faces of the part that may be touched, if any are named",
     ),
-    ("App::PropertyString", "Toolkit", "Fixture", "A name of workhold's toolkits, or a TOML file"),
+    (
+        "App::PropertyString",
+        "Toolkit",
+        "Fixture",
+        "A name of workhold's toolkits, a TOML file, or a vise of FreeCAD",
+    ),
     ("App::PropertyInteger", "Best", "Fixture", "How many of the best fixtures are kept"),
     ("App::PropertyInteger", "Chosen", "Fixture", "Which of them stands in the document, from 1"),
     ("App::PropertyBool", "Supports", "Fixture", "Whether three supports and a clamp on top are put in"),

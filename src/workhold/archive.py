@@ -33,7 +33,15 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 
-__all__ = ["ArchiveWriter", "ColumnFormat", "Columns", "is_archive", "map_archive", "release_mapped_pages"]
+__all__ = [
+    "ArchiveWriter",
+    "ColumnFormat",
+    "Columns",
+    "DirectoryCheckedFile",
+    "is_archive",
+    "map_archive",
+    "release_mapped_pages",
+]
 
 FIRST_BYTES = b"PK\x03\x04"
 ALIGNMENT = 64

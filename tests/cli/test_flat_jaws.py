@@ -124,23 +124,53 @@ def test_settings_of_freecad_s_vise_are_shown(run: Any, tmp_path: Path) -> None:
     path = tmp_path / "result.json"
     made = run("design", RECTANGLE, "--toolkit", "plain-vise-6-inch", "--out", str(path), "--thickness", "25")
     assert made.exit_code == 0, made.stderr
-    first = json.loads(run("show", str(path), "1", "--json").stdout)["fixture"]
-    settings = json.loads(run("show", str(path), "1", "--freecad", "--json").stdout)["freecad"]
-    vise = json.loads(path.read_text())["toolkit"]
-    assert settings == {
-        "JawWidth": vise["jaw_width"],
-        "JawHeight": vise["jaw_height"],
-        "MaxOpening": vise["max_opening"],
-        "Opening": first["jaw_separation"],
-        "SeatHeight": first["parallels"],
-        "X": pytest.approx(first["pose"]["x"] - vise["jaw_width"] / 2),
-        "Y": first["pose"]["y"],
-        "Z": first["parallels"] - vise["jaw_height"],
-        "Angle": first["pose"]["theta_deg"],
-    }
-    assert settings["SeatHeight"] > 0.0 > settings["Z"]
-    assert f"SeatHeight {first['parallels']:g}" in run("show", str(path), "1", "--freecad").stdout
-    pegs = tmp_path / "pegs.json"
-    assert run("design", BRACKET, "--toolkit", "plate-20mm", "--best", "1", "--out", str(pegs)).exit_code == 0
-    refused = run("show", str(pegs), "1", "--freecad")
-    assert refused.exit_code == 2 and "two flat jaws" in refused.stderr
+    for rank in ("1", "2"):
+        shown = json.loads(run("show", str(path), rank, "--json").stdout)["fixture"]
+        settings = json.loads(run("show", str(path), rank, "--freecad", "--json").stdout)["freecad"]
+        vise, pose = json.loads(path.read_text())["toolkit"], shown["pose"]
+        assert settings == {
+            "JawWidth": vise["jaw_width"],
+            "JawHeight": vise["jaw_height"],
+            "MaxOpening": vise["max_opening"],
+            "Opening": shown["jaw_separation"],
+            "SeatHeight": shown["parallels"],
+            # The part lies on the side of the fixed jaw to which y falls.
+            "X": pytest.approx(vise["jaw_width"] / 2 - pose["x"]),
+            "Y": 0.0 - pose["y"],
+            "Z": shown["parallels"] - vise["jaw_height"],
+            "Angle": (pose["theta_deg"] + 180) % 360,
+        }
+    assert settings["Y"] < 0
+
+
+def test_a_vise_of_freecad_is_named_by_its_file(run: Any, tmp_path: Path) -> None:
+    """Where a toolkit is named; what it does not state is asked for, or given beside it."""
+    from zipfile import ZipFile
+
+    def save(name: str, **lengths: float) -> Path:
+        rows = "".join(
+            f'<Property name="{key}" type="App::PropertyLength"><Float value="{value}"/></Property>'
+            for key, value in lengths.items()
+        )
+        xml = (
+            '<Document><Objects><Object type="App::VarSet" name="Vise"/></Objects>'
+            f'<ObjectData><Object name="Vise"><Properties>{rows}</Properties></Object></ObjectData></Document>'
+        )
+        with ZipFile(tmp_path / name, "w") as archive:
+            archive.writestr("Document.xml", xml)
+        return tmp_path / name
+
+    whole = save("whole.FCStd", Opening=50.0, JawHeight=40.0, JawWidth=125.0, MaxOpening=150.0)
+    narrow = save("narrow.FCStd", Opening=50.0, JawHeight=40.0)
+    shown = run("toolkits", whole)
+    assert shown.exit_code == 0 and "125 mm" in shown.stdout and "FreeCAD's CAM workbench" in shown.stdout
+    out = tmp_path / "r.json"
+    words = ("--thickness", "25", "--parallels", "20,30", "--out", out)
+    assert run("design", RECTANGLE, "--vise", whole, *words).exit_code == 0
+    toolkit = json.loads(out.read_text())["toolkit"]
+    assert (toolkit["jaw_width"], toolkit["parallels"]) == (125.0, [20.0, 30.0])
+    lacking = run("design", RECTANGLE, "--vise", narrow, *words)
+    assert lacking.exit_code == 2 and "width of its jaws is not given: add --jaw-width" in lacking.stderr
+    assert run("design", RECTANGLE, "--vise", narrow, "--jaw-width", "100", *words).exit_code == 0
+    none = run("toolkits", save("none.FCStd", Length=3.0))
+    assert none.exit_code == 2 and "none.FCStd: this FreeCAD document has no vise" in none.stderr

@@ -67,7 +67,8 @@ def toolkits(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="[VISE]", help="Show all figures of this toolkit: a name, or a TOML file of your own."
+            metavar="[VISE]",
+            help="Show all figures of this toolkit: a name, a TOML file of your own, or a vise of FreeCAD.",
         ),
     ] = None,
     unit: str | None = SHOWN_UNIT,

@@ -50,8 +50,8 @@ __all__ = [
 TOOLKIT = make_option(
     TOOLKIT_SECTION,
     "NAME|FILE",
-    f"{' '.join(f'{name}: {words}.' for name, words in NAMES.items())} Or a name of workhold toolkits, or a "
-    "TOML file. vise if not given.",
+    f"{' '.join(f'{name}: {words}.' for name, words in NAMES.items())} Or a name of workhold toolkits, a TOML "
+    "file, or a vise of FreeCAD (.FCStd). vise if not given.",
     "--toolkit",
 )
 MIN_OPENING = make_option(

@@ -130,6 +130,15 @@ LIMITS = {
         remedy="a clamp on top stands on none of the rest",
     ),
     "toolkit": FileLimits("a file that describes a toolkit", 1_000_000),
+    "freecad": FileLimits(
+        "a FreeCAD file with a vise",
+        PART_BYTES,
+        1_000_000,
+        "elements",
+        100,
+        SECONDS,
+        remedy="save the vise in a file of its own",
+    ),
     "loads": FileLimits("a file that describes loads", 1_000_000),
     "tools": FileLimits(
         "a table of tools", 1_000_000, 10_000, "tools", remedy="give the tools of the program"

@@ -161,10 +161,17 @@ class LoadedToolkit:
 
 
 def read_toolkit_file(path: Path) -> LoadedToolkit:
-    """Return the toolkit in a TOML file; raise InputError for a file that cannot be used."""
+    """Return the toolkit in a TOML file, or the vise in a file of FreeCAD; raise InputError for a file that cannot
+    be used.
+    """
+    from workhold.files.freecad_vise import ENDING as FREECAD
+    from workhold.files.freecad_vise import read_freecad_vise
     from workhold.files.input_forms import check_toolkit_entries
 
     try:
+        if path.suffix.lower() == FREECAD:
+            fields, title, source = read_freecad_vise(path)
+            return LoadedToolkit(path.stem, title, source, find_unit("mm"), "plain-vise", fields, Tolerance())
         return make_described_toolkit(
             path.stem, check_toolkit_entries(parse_toml(read_text(path, LIMITS["toolkit"])))
         )
@@ -345,7 +352,7 @@ def load_preset(name: str) -> LoadedToolkit:
 
 
 def load_toolkit(name: str | Path) -> LoadedToolkit:
-    """Return a toolkit from a TOML file, or by the name of a preset; a file
+    """Return a toolkit from a TOML file or the file of a vise in FreeCAD, or by the name of a preset; a file
     is preferred to a preset of the same name.
 
     Parameters

@@ -319,7 +319,7 @@ class Toolkit:
 
         Parameters
         ----------
-        name : one of :meth:`presets`, or the path of a toolkit's TOML file.
+        name : one of :meth:`presets`, or the path of a toolkit's TOML file, or of a vise of FreeCAD.
         changes : fields to change, such as ``columns=2``; lengths in mm.
 
         Raises

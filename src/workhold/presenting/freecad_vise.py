@@ -1,7 +1,8 @@
 """The settings of a vise of FreeCAD's CAM workbench for a set-up between two flat jaws.
 
 FreeCAD's development version has vises as files with a set of variables (a VarSet). Such a vise has its origin on
-the fixed jaw's face, at the top of the jaws, in the middle of their width; its jaws close along -y.
+the fixed jaw's face, at the top of the jaws, in the middle of their width. Its moving jaw is at y = -Opening, and the
+part between, so that its frame is that of ``model.jaw_hold`` after half a turn.
 """
 
 from __future__ import annotations
@@ -38,9 +39,9 @@ def make_freecad_settings(fixture: Fixture, jaws: JawPair | None) -> dict[str, f
         "MaxOpening": jaws.max_opening,
         "Opening": hold.opening,
         "SeatHeight": hold.parallels,
-        "X": fixture.pose.x - jaws.width / 2,
-        "Y": fixture.pose.y,
+        "X": jaws.width / 2 - fixture.pose.x,
+        "Y": -fixture.pose.y,
         "Z": -jaws.compute_top(hold.parallels),
-        "Angle": fixture.pose.theta_deg,
+        "Angle": (fixture.pose.theta_deg + 180.0) % 360.0,
     }
     return {name: round(value, 6) + 0.0 for name, value in settings.items() if value is not None}
