@@ -86,8 +86,8 @@ def draw_dimension(
     """Draw a dimension line between two page points, with its text above it or to its left; return the text's
     box.
 
-    The text of an upright line is turned so that it is read from the right. Where it is longer than the line,
-    ``past`` names the end of the line beyond which it is written; None keeps it beside the line.
+    The text of an upright line is turned so that it is read from the right. If it is longer than the line, it
+    is written beyond the end that ``past`` names; with None it stays beside the line.
     """
     ux, uy = draw_dimension_line(scene, start, end)
     width = measure_text(text, size, bold)
@@ -334,7 +334,7 @@ class LabelPlacer:
         """Return a place for each label, in the order of ``labels``.
 
         First each label in turn takes its cheapest candidate beside the labels placed so far. Then each is
-        chosen anew beside all others, at most ``sweeps`` times, until no label moves.
+        chosen again with all others in place, at most ``sweeps`` times, until no label moves.
         """
         kept = [label.keep_cheapest(self.compute_fixed_costs(label)) for label in labels]
         reaches = np.array([label.reach for label in kept]).reshape(-1, 4)

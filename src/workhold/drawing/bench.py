@@ -202,9 +202,7 @@ class BenchDrawing:
 
     @property
     def touching(self) -> list[int]:
-        """The indices of the pegs that touch one face each; ends on a wall that are corners of the part are
-        left out.
-        """
+        """The indices of the pegs that touch exactly one face; corners of the part on a wall are left out."""
         return [index for index, peg in enumerate(self.fixture.pegs) if peg.beside is None]
 
     def find_touched_piece(self, index: int) -> Segment:

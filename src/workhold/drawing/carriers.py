@@ -41,8 +41,8 @@ CLOSEST_HOLES = 5.0
 
 
 def limit_holes_drawn(view: View, shown: ShownSetUp) -> float:
-    """Return the number of holes up to which all holes of a carrier are drawn; above it only those near the
-    pegs are.
+    """Return the largest number of holes of a carrier that are all drawn; of more holes, only those near the
+    pegs are drawn.
 
     It is inf, or 0 where the holes would be too close on the page.
     """

@@ -60,7 +60,7 @@ HIGHEST_INSET = 320.0
 def place_drawing_on_page(page: tuple[float, float], extent: Box) -> tuple[Box, View]:
     """Return (page box of the drawing, view): the box is beside the panel of words.
 
-    The view is the largest in which an extent (mm) leaves room in the box for lettering.
+    The view is the largest one that shows an extent (mm) and leaves room in the box for lettering.
     """
     box = Box(EDGE, EDGE, page[0] - EDGE - PANEL - GUTTER, page[1] - EDGE)
     inner = Box(box.x0 + LEFT, box.y0 + TOP, box.x1 - RIGHT, box.y1 - BOTTOM - SCALE_BAR)
@@ -152,7 +152,7 @@ ALONE, RIM = (320.0, 240.0), 6.0
 
 
 def draw_thumbnail(fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit) -> str:
-    """Return one fixture as a small picture without words, to stand beside a text.
+    """Return one fixture as a small picture without words, to be placed beside a text.
 
     Returns
     -------

@@ -30,7 +30,7 @@ SHORTER = 2.0
 def list_sheet_hardware(sheet: SetupSheet) -> list[HardwareItem]:
     """Return the hardware of a sheet's set-up.
 
-    The length of pegs is None where it would follow from assumed heights only.
+    The length of pegs is None if it would follow from assumed heights only.
     """
     chosen, heights, details = sheet.details.supports, sheet.heights, sheet.details
     length = details.peg_length if heights is None else heights.peg_length
@@ -46,7 +46,9 @@ def list_sheet_hardware(sheet: SetupSheet) -> list[HardwareItem]:
 
 
 def write_hardware(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the table of the hardware that the set-up needs, and notes on how the lengths of pegs add up."""
+    """Write the table of the hardware that the set-up needs, and notes on the composition of the pegs'
+    lengths.
+    """
     lengths, heights, details, items = sheet.lengths, sheet.heights, sheet.details, list_sheet_hardware(sheet)
     write_heading(column, "To take from the drawer")
     rows = [
@@ -94,7 +96,7 @@ def write_hardware(column: TextColumn, sheet: SetupSheet) -> None:
 def describe_length(item: HardwareItem, sheet: SetupSheet) -> str:
     """Return the length of an item in the sheet's unit.
 
-    Where the length of pegs is unknown, the result is the name of the usual dowel; where there is none, "–".
+    If the length of pegs is unknown, the result is the name of the usual dowel, or "–" if there is none.
     """
     if item.length is not None:
         return sheet.lengths.format_number(item.length)
@@ -104,11 +106,11 @@ def describe_length(item: HardwareItem, sheet: SetupSheet) -> str:
 
 
 def find_highest_press(sheet: SetupSheet, heights: SheetHeights) -> float | None:
-    """Return the greatest height in mm at which any peg presses, if pegs that end there would be enough.
+    """Return the greatest height in mm at which any peg presses, if pegs of that height would be enough.
 
-    Shorter pegs press at the same places, and are less in the way. Returns None where they would be shorter
-    by less than ``SHORTER`` or not at all, for a part that is not a solid, and for pegs that end below the
-    part's top.
+    Shorter pegs press at the same places and leave more room. Returns None if they would be shorter by less
+    than ``SHORTER`` or not at all, for a part that is not a solid, and for pegs that end below the part's
+    top.
     """
     solid, carriers = sheet.workpiece.solid, {one.name: one for one in sheet.toolkit.carriers}
     if solid is None or heights.peg_top < solid.height or any(one.heights for one in carriers.values()):
@@ -127,12 +129,12 @@ class HardwareItem:
 
     Parameters
     ----------
-    count : how many.
-    name : what they are, such as "locators".
+    count : number of pieces.
+    name : word for them, such as "locators".
     diameter : in mm; None if not round.
     length : length of pegs, or height of supports, in mm; None where it is unknown or there is none.
     note : a remark of a few words.
-    of_pegs : whether they stand in holes of a plate, as dowels do.
+    of_pegs : whether they stand in holes of a plate, like dowels.
     """
 
     count: int

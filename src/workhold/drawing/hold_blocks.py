@@ -132,8 +132,8 @@ def find_sheet_query(sheet: SetupSheet) -> Query:
 
 
 def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block of what to set: parallels, opening, touched faces, work stop, and place of the part
-    along the jaws.
+    """Write the block of settings: parallels, opening, touched faces, work stop, and place of the part along
+    the jaws.
     """
     hold, jaws, lengths = sheet.fixture.hold, sheet.toolkit.flat_jaws, sheet.lengths
     assert isinstance(hold, JawHold) and jaws is not None
@@ -166,7 +166,7 @@ def write_setting(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_raw_block(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block of the raw block: its size, the part inside, and what of its sides is cut here."""
+    """Write the block of the raw block: its size, the part inside, and the sides to be cut in this set-up."""
     query, jaws, unit = find_sheet_query(sheet), sheet.toolkit.flat_jaws, sheet.lengths.unit
     hold = sheet.fixture.hold
     assert isinstance(hold, JawHold) and jaws is not None
@@ -177,10 +177,11 @@ def write_raw_block(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def list_raw_zero_facts(sheet: SetupSheet) -> list[tuple[str, float]]:
-    """Return what to touch a raw block off at: names of the distances of part zero, and these in mm.
+    """Return the distances for touching off a raw block: names of the distances of part zero, and these in
+    mm.
 
-    They are those from the work stop, or from the block's left end without one, from the fixed jaw, and of Z0
-    from what the block lies on and from its top. [] without a raw block.
+    X is measured from the work stop or, without one, from the block's left end, Y from the fixed jaw, and Z0
+    from the block's rest and from its top. [] without a raw block.
     """
     fixture, jaws = sheet.fixture, sheet.toolkit.flat_jaws
     query, hold = get_query(fixture), fixture.hold
@@ -202,7 +203,7 @@ def list_raw_zero_facts(sheet: SetupSheet) -> list[tuple[str, float]]:
 
 
 def write_side(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the block with the view from the end of the vise; nothing where the part's height is unknown."""
+    """Write the block with the view from the end of the vise; nothing if the part's height is unknown."""
     query, jaws = find_sheet_query(sheet), sheet.toolkit.flat_jaws
     if query.part_height is None or jaws is None:
         return

@@ -1,4 +1,6 @@
-"""Two flat jaws from the end of the vise, with parallels and part: what is gripped, and what stands above."""
+"""Two flat jaws seen from the end of the vise, with parallels and part: the grip, and the height above the
+jaws.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +32,7 @@ def draw_jaw_side(
 ) -> None:
     """Draw the view from the left end of the jaws into a text column, the fixed jaw at the left.
 
-    The column continues below the view. ``height`` is the part's in mm. Nothing is drawn where it is None, or
+    The column continues below the view. ``height`` is the part's in mm. Nothing is drawn if it is None, or if
     the part is not held by flat jaws.
     """
     hold = fixture.hold
@@ -111,7 +113,7 @@ def draw_part_side(scene: Scene, view: View, fixture: Fixture, height: float) ->
 def draw_heights(
     scene: Scene, view: View, fixture: Fixture, top: float, height: float, lengths: LengthUnit
 ) -> None:
-    """Draw dimensions at the right: how far the part stands above the jaws, the grip, and the height of the
+    """Draw dimensions at the right: the height of the part above the jaws, the grip, and the height of the
     parallels.
     """
     hold = fixture.hold

@@ -1,6 +1,6 @@
-"""The block of words and numbers beside a fixture: what to set, which holes to use, what the signs mean.
+"""The block of words and numbers beside a fixture: settings, holes, and a legend.
 
-The legend explains the signs of every plan, of what moves, and of what the part lies on.
+The legend explains the symbols common to all plans, those of moving carriers, and those of the part's rest.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class TextColumn:
 
     Parameters
     ----------
-    scene : what to write on.
+    scene : the scene to write on.
     x, y : upper left corner, page units; ``y`` moves down with every line.
     width : page units.
     """
@@ -150,7 +150,7 @@ class TextColumn:
 
 
 def format_closure_margin(fixture: Fixture) -> str:
-    """Return the closure margin of a fixture as a number for a picture, "–" where it is not known."""
+    """Return the closure margin of a fixture as a number for a picture, "–" if it is not known."""
     margin = fixture.quality.get("closure_margin")
     return "–" if margin is None else format_value(margin)
 
@@ -226,8 +226,8 @@ def format_count(count: int, noun: str, numbers: Sequence[str] = ()) -> str:
 
 
 def describe_row_offset(toolkit: Toolkit, lengths: LengthUnit) -> str | None:
-    """Return in words by how much the moving carrier's rows are offset from those of the first plate; None
-    where they are level.
+    """Return a phrase with the offset of the moving carrier's rows from those of the first plate; None if
+    they are level.
     """
     offset = toolkit.moving.offset[1] - toolkit.plates[0].offset[1]
     return f"{lengths.format_length(abs(offset))} {'above' if offset > 0 else 'below'}" if offset else None

@@ -232,7 +232,7 @@ MOST_NUMBERS = 60
 def draw_parts(
     name: str, parts: Sequence[Sequence[NDArray[np.float64]]], chosen: int, *, unit: Unit = MILLIMETRE
 ) -> str:
-    """Return a picture of the parts of a file where they lie, each with its number, on A4, as SVG text.
+    """Return a picture of the parts of a file at their places, each with its number, on A4, as SVG text.
 
     Parameters
     ----------

@@ -73,11 +73,11 @@ class PagePaths:
     def from_moves(
         cls, moves: Moves, view: View, pose: Pose | None = None, box: Box | None = None
     ) -> PagePaths:
-        """Return the moves as a view shows them.
+        """Return the moves in a view.
 
         Parameters
         ----------
-        pose : of the part, in whose frame the moves are; None where the view shows the part's frame itself.
+        pose : pose of the part, in whose frame the moves are; None if the view shows the part's frame itself.
         box : page box at which straight moves are cut off, and beyond which arcs are not shown; None for no
             limit.
         """
@@ -157,7 +157,7 @@ def clip_to_box(start: Floats, end: Floats, box: Box) -> tuple[Floats, Floats]:
     """Return (shares (N,), shares (N,)) at which N straight lines enter and leave a box, 0 at the start and 1
     at the end.
 
-    ``start`` and ``end`` are (N, 2). The first share is larger than the second where a line is nowhere inside
+    ``start`` and ``end`` are (N, 2). The first share is larger than the second if a line is nowhere inside
     (Y.-D. Liang, B. A. Barsky 1984).
     """
     first, last = np.zeros(len(start)), np.ones(len(start))
@@ -182,7 +182,7 @@ class PathStyle:
         moves.
     place : index of the tool, in the order in which tools first move; -1 for rapid moves.
     tool : number of the tool; -1 for rapid moves.
-    level : of height, 0 the lowest; -1 where the look does not depend on height.
+    level : level of height, 0 the lowest; -1 if the look does not depend on height.
     """
 
     kind: str
@@ -268,10 +268,10 @@ class PlannedPath:
 
     Parameters
     ----------
-    program : what the machine does while the fixture holds the part.
-    fixture : in whose pose the part lies.
-    passing : the nearest approach of its tools to what holds the part; None where no tool comes down to it.
-    peg_height : height in mm of the highest thing that holds the part; None where it is unknown.
+    program : the machine's program for the part in the fixture.
+    fixture : fixture with the pose of the part.
+    passing : the nearest approach of its tools to the fixture; None if no tool comes down to it.
+    peg_height : height in mm of the highest element of the fixture; None if unknown.
     """
 
     program: Program
@@ -350,9 +350,7 @@ class PlannedPath:
             placer.avoid_box(Box(x, y, x, y).grow(6))
 
     def make_labels(self, view: View, lengths: LengthUnit) -> list[Label]:
-        """Return the label of the nearest move in a list; [] where no tool comes down to what holds the
-        part.
-        """
+        """Return the label of the nearest move in a list; [] if no tool comes down to the fixture."""
         if self.passing is None:
             return []
         size = (measure_text(self.describe_nearest_move(lengths), NAME, bold=True) + 8, HIGH)
@@ -370,7 +368,7 @@ class PlannedPath:
 
 
 def make_planned_path(result: Result, index: int) -> PlannedPath | None:
-    """Return the program of a result over the fixture with this index, from 0; None where the result has no
+    """Return the program of a result over the fixture with this index, from 0; None if the result has no
     program.
     """
     query = result.query

@@ -191,8 +191,8 @@ def make_mark_label(point: Point, name: str) -> Label:
 
 
 def make_face_tag(bench: BenchDrawing, face_number: int, view: View) -> Label:
-    """Return the label of a touched face's number: inside the part; beside the face's contacts it costs
-    least.
+    """Return the label of a touched face's number. Places for it are inside the part, and cost least beside
+    the face's contacts.
     """
     index = next(k for k in bench.touching if bench.fixture.pegs[k].face == face_number)
     face = bench.faces[index]
@@ -315,7 +315,7 @@ def draw_hole_names(
     """Write column letters above and below the plates and row numbers beside
     them; return the boxes of the names.
 
-    ``frame`` is the page box of plates and part. Nothing is written on a side where another plate stands.
+    ``frame`` is the page box of plates and part. Nothing is written on a side with another plate.
     """
     group, names = scene.group("hole-names"), []
     if not bench.shown.carriers:
@@ -347,8 +347,8 @@ def draw_hole_names(
 def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> list[Box]:
     """Write column letters and row numbers; return their page boxes.
 
-    ``names`` holds (page point, name, has a peg, SVG anchor). Names with pegs are written first, and move
-    aside where another name stands. The others are left out where there is no room.
+    ``names`` holds (page point, name, has a peg, SVG anchor). Names with pegs are written first, and moved
+    aside from other names. The others are left out if there is no room.
     """
     boxes: list[Box] = []
     for at, name, used, wanted in sorted(names, key=lambda each: not each[2]):
@@ -374,7 +374,7 @@ def write_names(scene: Scene, names: Sequence[tuple[Point, str, bool, str]]) -> 
 def write_rim_words(scene: Scene, frame: Box, names: list[Box]) -> list[Box]:
     """Write "row" and "column" at the left rim of the frame; return the boxes of the words.
 
-    A word is left out where one of ``names`` stands.
+    A word is left out if one of ``names`` is in its place.
     """
     boxes = []
     for word, y in (("row", frame.y0 - 14), ("column", frame.y1 + 14)):
@@ -408,7 +408,7 @@ def draw_ruling(scene: Scene, rim: Point, plate: Point) -> None:
 
 
 def compute_name_box(at: Point, name: str, used: bool, anchor: str) -> Box:
-    """Return the page box of a column letter or row number; ``used`` says whether a peg stands there."""
+    """Return the page box of a column letter or row number; ``used`` tells whether a peg stands there."""
     size = NAME_SIZE[used]
     width = measure_text(name, size, used)
     left = at[0] - {"start": 0.0, "middle": 0.5, "end": 1.0}[anchor] * width

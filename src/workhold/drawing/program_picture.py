@@ -151,8 +151,8 @@ def write_program(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_path(column: TextColumn, path: PlannedPath, lengths: LengthUnit, fill: str = BLACK) -> None:
-    """Write the program's zero, its tools in their colours with their lines, and
-    the move nearest to what holds the part.
+    """Write the program's zero, its tools in their colours with their lines, and the move nearest to the
+    fixture.
     """
     program = path.program
     x, y = program.zero
@@ -227,7 +227,7 @@ def list_tools_above_pegs(path: PlannedPath) -> list[str]:
 
 
 def describe_clearance(path: PlannedPath, lengths: LengthUnit) -> str:
-    """Return a sentence on the move that comes nearest to what holds the part."""
+    """Return a sentence on the move that comes nearest to the fixture."""
     near = path.passing
     if path.peg_height is None:
         # That all tools keep clear of what friction holds with is asked of each set-up.

@@ -109,8 +109,8 @@ def shorten_text(content: str, size: float, width: float, bold: bool = False) ->
 
 
 def count_fitting_letters(content: str, size: float, width: float, bold: bool, behind: str = "") -> int:
-    """Return how many letters from the start of ``content``, followed by ``behind``, fit in ``width`` page
-    units.
+    """Return the number of letters from the start of ``content`` that, followed by ``behind``, fit in
+    ``width`` page units.
 
     Takes little time even for a long text.
     """
@@ -409,7 +409,7 @@ class Scene:
 
 @frozen
 class LengthUnit:
-    """How a picture writes lengths: in which unit, with how many decimals.
+    """The unit and the decimals of lengths in a picture.
 
     Examples
     --------

@@ -82,7 +82,7 @@ class SeatingSentences:
     def compute_rounded_reading(self, opened: float) -> float:
         """Return the reading in mm at which the jaws are opened by ``opened`` mm from the fixture's own seat.
 
-        It is rounded to the displayed decimals in the direction in which the jaws are opened less.
+        It is rounded to the displayed decimals, toward less opening.
         """
         step = self.lengths.unit.millimetres * 10.0**-self.lengths.decimals
         reading = self.gauge.compute_reading(self.own.jaw_separation + self.seating.clamping * opened) / step
@@ -95,8 +95,8 @@ class SeatingSentences:
 
     @cached_property
     def wrong(self) -> list[Seat]:
-        """The wrong seats within the opening asked about, sorted by how near their reading is to the right
-        one.
+        """The wrong seats within the opening of the query, sorted by the difference of their reading from the
+        right one.
         """
         return sorted(
             self.seating.list_wrong_seats(),
@@ -105,15 +105,15 @@ class SeatingSentences:
 
     @property
     def alike(self) -> int:
-        """The number of other seats in which the part covers the same place as in the fixture."""
+        """The number of other seats in which the part covers the same area as in the fixture."""
         return sum(seat.same_place and not seat.is_own for seat in self.seating.seats)
 
     def compute_safe_start(self, workpiece: Workpiece) -> tuple[float, float] | None:
-        """Return (shift in mm, turn in degrees) by which the part may be off its place and certainly settles
-        there.
+        """Return (shift in mm, turn in degrees): a part within both of its place certainly settles in its
+        place.
 
-        Returns None where no such bound is known. Half of ``seating.placing`` is the shift. The other half is
-        2 R sin(turn / 2), with R the distance of the part's farthest point from its middle.
+        Returns None if no such bound is known. Half of ``seating.placing`` is the shift. The other half is 2
+        R sin(turn / 2), with R the distance of the part's farthest point from its middle.
         """
         if self.seating.placing is None:
             return None
@@ -122,16 +122,16 @@ class SeatingSentences:
         return half, min(2.0 * degrees(asin(min(half / (2.0 * arm), 1.0))), ANY_TURN)
 
     def describe_difference(self, seat: Seat) -> str:
-        """Return how a seat's reading differs from the right one, such as "0.35 mm less", or "the same"."""
+        """Return a phrase on the difference of a seat's reading from the right one, such as "0.35 mm less",
+        or "the same".
+        """
         if abs(seat.difference) < 0.5 * 10.0**-self.lengths.decimals * self.lengths.unit.millimetres:
             return "the same"
         more = self.compute_reading(seat) > self.compute_reading(self.own)
         return f"{self.lengths.format_length(abs(seat.difference))} {'more' if more else 'less'}"
 
     def list_steps(self, workpiece: Workpiece) -> list[str]:
-        """Return sentences, in the order of work, on how far to open, where to put the part, and what to
-        read.
-        """
+        """Return sentences, in the order of work: the opening, the place of the part, and the reading."""
         seating, right = self.seating, self.format_reading(self.compute_reading(self.own))
         ways = self.gauge.opening_words
         most, more = ("at most", "more") if self.gauge.grows else ("at least", "less")
@@ -169,7 +169,7 @@ class SeatingSentences:
         return steps
 
     def describe_wrong_seats(self) -> list[str]:
-        """Return sentences on the number of wrong seats, and on which of them the reading does not reveal."""
+        """Return sentences on the number of wrong seats, and on those that the reading does not reveal."""
         seating, reach = self.seating, ""
         if seating.opening is not None:
             reach = f", {self.gauge.opening_words.done.lower()} by no more than {self.format_upper_limit(seating.opening)},"

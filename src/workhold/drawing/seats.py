@@ -1,7 +1,8 @@
-"""Pictures of how a part can come to rest on a fixture's pegs, and the blocks of a setup sheet about it.
+"""Pictures of the ways in which a part can come to rest on a fixture's pegs, and the blocks of a setup sheet
+about them.
 
-The fixture's own seat and the wrong ones stand side by side, to know them by sight. The blocks say whether
-the part ends up where it should, and how it looks where it does not.
+The fixture's own seat and the wrong ones are shown side by side, so that they can be recognized by sight. The
+blocks say whether the part ends up in its place, and show the wrong places.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ def draw_seats(
     Parameters
     ----------
     seats : in the order in which they are numbered.
-    title : what to call the fixture.
+    title : name of the fixture.
 
     Returns
     -------
@@ -77,12 +78,12 @@ class PlacedSeat:
     Parameters
     ----------
     seat : the seat.
-    loops : of the placed part.
+    loops : loops of the placed part.
     pegs : (centre, radius, whether it touches) of each peg.
     reading : (reading in this seat, reading in the fixture's own pose).
     extent : box around part and pegs.
     walls : number of straight walls, which run along x at y = 0.
-    touching : two words on how the part lies in the fixture.
+    touching : two words on the position of the part in the fixture.
     """
 
     seat: Seat
@@ -181,9 +182,7 @@ def write_seating(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_wrong_seats(column: TextColumn, sheet: SetupSheet) -> None:
-    """Draw the right seat and those wrong seats whose readings are nearest to its reading, each with its
-    reading.
-    """
+    """Draw the right seat and the wrong seats with the nearest readings, each with its reading."""
     words = sheet.seating
     assert words is not None
     write_heading(column, "What it looks like")
@@ -222,8 +221,8 @@ def write_wrong_seats(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_caption(words: SeatingSentences, seat: Seat) -> list[str]:
-    """Return the lines below a seat's picture: its reading, the difference from the right reading, and what
-    is wrong.
+    """Return the lines below a seat's picture: its reading, the difference from the right reading, and the
+    fault.
     """
     notes = ["turned over"] * seat.mirrored + ["not located"] * (seat.kind == "loose")
     notes += ["not settled"] * (seat.kind == "unsettled")

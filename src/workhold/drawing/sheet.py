@@ -1,15 +1,15 @@
-"""The setup sheet: one fixture on paper, to a standard scale, with all that is needed to build it.
+"""The setup sheet: one fixture on paper, to a standard scale, with all data that are needed to build it.
 
-Plan and blocks of words are laid out so that the part shows largest. There is one page when that costs the
-drawing nothing, else two or more. The first has the plan and what is set at the machine, the others have the
-rest, below a view from the side where there is one. Scales are 1, 2 and 5 times powers of ten, up or down
-(ISO 5455:1979). Round scales between these are used too, as the standard allows where a drawing would be
-needlessly small.
+Plan and blocks of words are laid out so that the part is shown as large as possible. There is one page if the
+drawing is as large as on more pages, else two or more. The first has the plan and the settings at the
+machine, the others have the rest, below a view from the side if there is one. Scales are 1, 2 and 5 times
+powers of ten, up or down (ISO 5455:1979). Round scales between these are used too, as the standard allows
+where a drawing would be needlessly small.
 
 Glossary
 --------
 block : some lines of words or a table under one heading, written by one function, of a known height.
-run : blocks that stand one below the other in a column.
+run : blocks one below the other in a column.
 lying, upright : a page wider than high, or higher than wide.
 panel : columns of words at the right of a page, beside the plan.
 strip : columns of words below the plan, two on an upright page and three on a lying one.
@@ -147,9 +147,7 @@ def draw_setup_sheet(result: Result, rank: int, **asked: Any) -> tuple[str, ...]
 
 
 def make_side_figure(sheet: SetupSheet, bench: BenchDrawing) -> SideFigure | None:
-    """Return the view from the side; None where the sheet has no heights (the part's thickness is not
-    known).
-    """
+    """Return the view from the side; None if the sheet has no heights (the part's thickness is not known)."""
     if sheet.heights is None:
         return None
     view = choose_side_view(bench, sheet.workpiece, sheet.heights, sheet.details.supports)
@@ -254,7 +252,7 @@ Filled = tuple[Box, tuple[Block, ...]]
 
 @frozen
 class PageLayout:
-    """Where the plan and the blocks stand on the pages of a sheet.
+    """The places of the plan and the blocks on the pages of a sheet.
 
     Parameters
     ----------
@@ -262,7 +260,7 @@ class PageLayout:
     plan : the page box of the drawing.
     columns : (box, blocks) of each column beside or below the plan.
     more : such columns of each further page; empty for a sheet of one page.
-    scale : of the plan.
+    scale : scale of the plan.
     figure : (page box, scale) of the side view at the top of the second page; None without one.
     """
 
@@ -283,10 +281,10 @@ def arrange_sheet(
 ) -> PageLayout:
     """Return the best layout of blocks and a plan of an extent (mm) on paper.
 
-    ``paper`` is its (width, height) in page units when upright. The blocks ``needed`` stand on the page of
-    the plan; where they leave no room for it, the last of them go to the second page. A view from the side
-    (``figure``) stands at the top of the second page. A layout of one page is chosen where its drawing is as
-    large as on two pages, or large enough.
+    ``paper`` is its (width, height) in page units when upright. The blocks ``needed`` are on the page of the
+    plan; if they leave no room for it, the last of them go to the second page. A view from the side
+    (``figure``) is at the top of the second page. A layout of one page is chosen if its drawing is as large
+    as on two pages, or large enough.
     """
     lying_page, blocks = (paper[1], paper[0]), [*needed, *others]
     least = len(needed)
@@ -335,7 +333,7 @@ def make_layout(
     rest: Sequence[Block],
     figure: SideFigure | None = None,
 ) -> PageLayout | None:
-    """Return a layout with a plan in the box ``plan``; None where the plan would be too small.
+    """Return a layout with a plan in the box ``plan``; None if the plan would be too small.
 
     ``columns`` are the filled columns beside or below the plan. The blocks ``rest`` go to further pages,
     below the view from the side (``figure``), if any.
@@ -456,7 +454,7 @@ def fill_pages(
 def fill_runs(
     blocks: Sequence[Block], heights: Sequence[float], count: int, height: float
 ) -> list[Sequence[Block]] | None:
-    """Return ``count`` runs, at most ``height`` high, that hold all blocks; None where that is not possible.
+    """Return ``count`` runs, at most ``height`` high, that contain all blocks; None if that is not possible.
 
     ``heights`` are those of the blocks. As many as possible of the first blocks keep their order from run to
     run. Each of the others is added below the first run with room for it.

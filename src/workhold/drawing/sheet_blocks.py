@@ -1,7 +1,7 @@
-"""The blocks of words and tables on a setup sheet, and which there are: title, settings, steps, quality,
+"""The blocks of words and tables on a setup sheet, and their selection: title, settings, steps, quality,
 loads.
 
-The block of the pegs says where each stands and which face it touches. Two jaws have a block about their
+The block of the pegs gives each peg's hole and the face that it touches. Two jaws have a block about their
 opening and how to measure it. A plate with locators and clamps has blocks about the clamps instead. The block
 about counting holes also says how far the whole set-up may be moved along them.
 """
@@ -119,7 +119,7 @@ def describe_peg_size(sheet: SetupSheet, carrier: Carrier) -> str:
 
 
 def write_flush(column: TextColumn, sheet: SetupSheet, wall: Carrier) -> None:
-    """Write on which faces the part lies flush on a wall."""
+    """Write the faces on which the part lies flush on a wall."""
     plate, edge = sheet.toolkit.plates[0], sheet.datum.edge
     ends = list(dict.fromkeys(peg.touching for peg in sheet.fixture.pegs if peg.carrier == wall.name))
     lies = f"with {ends[0]}" if len(ends) == 1 else f"from {ends[0]} to {ends[1]}"
@@ -148,7 +148,7 @@ def write_placing_step(sheet: SetupSheet) -> str:
 
 
 def describe_touch(sheet: SetupSheet) -> str:
-    """Return a sentence on which face each peg touches, and on how to check that."""
+    """Return a sentence with the face that each peg touches, and the way to check it."""
     touch = join_words([f"{peg.touching} at {peg.hole}" for peg in sheet.fixture.pegs])
     return f"{touch}. A strip of paper must not pull out at any of them."
 
@@ -261,7 +261,7 @@ def compute_needed_clamp_force(sheet: SetupSheet) -> float:
 
 
 def write_order(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write in which order to tighten two clamps, and the ratio of their forces."""
+    """Write the order in which to tighten two clamps, and the ratio of their forces."""
     fixture, (first, second) = sheet.fixture, name_clamps(sheet.fixture)
     write_heading(column, "Order of tightening")
     column.write_paragraph(describe_tightening_order(fixture), BODY, bold=True)
@@ -324,7 +324,7 @@ def write_counting(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_jaws(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write how the holes of the two jaws are named and counted."""
+    """Write the names of the holes of the two jaws, and how they are counted."""
     lengths, first, moving = sheet.lengths, sheet.toolkit.plates[0], sheet.toolkit.moving
     pitch_x, pitch_y = (lengths.format_short(pitch) for pitch in first.pitch)
     peg = sheet.fixture.pegs[0]
@@ -364,9 +364,9 @@ def write_plate(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def describe_place(sheet: SetupSheet) -> str:
-    """Return a sentence on how far the whole set-up is moved on its plate from where it is listed.
+    """Return a sentence with the shift of the whole set-up on its plate from its listed place.
 
-    Returns "" where it is not moved, or stands on supports.
+    Returns "" if it is not moved, or if it is on supports.
     """
     if sheet.details.supports is not None or sheet.details.moved == (0, 0):
         return ""
@@ -520,7 +520,7 @@ def write_loads(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def write_bending(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the table of how far pegs bend, and how far that moves the part."""
+    """Write the table of the bending of pegs, and the movement of the part by it."""
     bent, lengths, mover = sheet.details.bent, sheet.lengths, sheet.toolkit.moving.noun
     assert bent is not None
     write_heading(column, f"{sheet.toolkit.plates[0].peg.capitalize()}s bend")

@@ -1,6 +1,6 @@
-"""What a setup sheet shows besides the fixture: its details, what calipers measure, and cautions.
+"""The contents of a setup sheet besides the fixture: its details, caliper measurements, and cautions.
 
-The details are paper, unit, names, dates, and what the loads do.
+The details are paper, unit, names, dates, and the effect of the loads.
 """
 
 from __future__ import annotations
@@ -69,13 +69,13 @@ class SheetDetails:
     ----------
     number, count : the fixture's rank in its result, and the number of fixtures listed there.
     day : the date written on the sheet.
-    result_hash : SHA-256 of the result file in hexadecimal; empty for a result of no file.
+    result_hash : SHA-256 of the result file in hexadecimal; empty for a result without a file.
     version : of the program.
     paper : "a4" or "letter"; None is letter for lengths in inches, else A4.
     unit : of lengths.
     part_name : written instead of the workpiece's own name; None for that name.
     tolerance : tolerances of pegs and faces, for which the location error is computed.
-    jaw_force : in N; None when it is left open.
+    jaw_force : jaw force in N; None if not given.
     friction : coefficient of friction that was asked for with the loads.
     loads : loads on the part, and the peg forces under each.
     zero : part zero; the drawing's origin if None.
@@ -183,7 +183,7 @@ class CaliperCheck:
     ----------
     left, right : (column, row) of a hole on the first carrier, and of a hole on the other.
     distance : between their centres, in mm.
-    placed : how many of the two hold a peg of the fixture.
+    placed : number of the two holes with a peg of the fixture.
     """
 
     left: tuple[int, int]
@@ -241,8 +241,8 @@ def list_cautions(
     """Return the cautions of a fixture, in this order: unfit, program zero, contacts, forces, bending, loads,
     seating.
 
-    ``distances`` are those of :func:`measure_edge_distances`. Where the seating is not known, the last
-    caution is instead about other fixtures in the same holes.
+    ``distances`` are those of :func:`measure_edge_distances`. If the seating is not known, the last caution
+    is instead about other fixtures in the same holes.
     """
     found: list[Caution] = []
     margin, error = fixture.quality.get("closure_margin", inf), fixture.quality.get("location_error", 0.0)
@@ -311,7 +311,7 @@ def list_cautions(
 
 
 def find_shift_on_plate(fixture: Fixture, result: Result, at: str | None) -> tuple[int, int]:
-    """Return (columns, rows) by which a fixture is moved on its plate from where it is listed.
+    """Return (columns, rows) by which a fixture is moved on its plate from its listed place.
 
     It is moved to the hole ``at``, or if that is None to the plate's middle.
     """
@@ -333,11 +333,11 @@ def find_part_lift(supports: ChosenSupports | None, support_height: float | None
 def find_pressed_height(
     thickness: float | None, peg_height: float | None, supports: ChosenSupports | None, lift: float
 ) -> float | None:
-    """Return the height in mm, above the part's lower side, up to which pegs press on a prism; None where it
-    is unknown.
+    """Return the height in mm, above the part's lower side, up to which pegs press on a prism; None if
+    unknown.
 
-    It is the lesser of two: the part's thickness (if that is None, the thickness that supports were asked
-    with), and ``peg_height``, which counts from the plates, minus ``lift``. Either may be unknown.
+    It is the smaller of two heights, either of which may be unknown: the part's thickness (if None, the
+    thickness in the request for supports), and ``peg_height``, measured from the plates, minus ``lift``.
     """
     if thickness is None and supports is not None:
         thickness = supports.supports.request.thickness
@@ -350,7 +350,7 @@ def choose_zero_to_set(
 ) -> PartZero:
     """Return the part zero to set at the machine.
 
-    It is the one asked for; if none is, that of the program, and without a program the usual one.
+    It is the requested one, else that of the program, else the usual one.
     """
     if program is not None and question.zero is None:
         return PartZero(program.zero, "place given" if any(program.zero) else "origin of the drawing")
@@ -367,8 +367,8 @@ def collect_hold_details(
     count: int | None,
     listed_as: str,
 ) -> tuple[Fixture, SheetDetails]:
-    """Return (fixture, details of its setup sheet) for the fixture with this rank, from 1, which friction
-    holds.
+    """Return (fixture, details of its setup sheet) for the fixture with this rank, from 1, in which friction
+    holds the part.
 
     The details are without those of pegs.
     """
@@ -424,9 +424,10 @@ def collect_sheet_details(
     Parameters
     ----------
     rank : of the fixture, from 1.
-    loads : taken instead of those of the result; None takes these.
-    others : how many other fixtures use the same holes; None counts them in the result.
-    number, count : for a fixture taken out of a larger result, its rank there and how many that result lists.
+    loads : loads used instead of the result's; None for the result's.
+    others : number of other fixtures in the same holes; None to count them in the result.
+    number, count : for a fixture taken out of a larger result, its rank there and the number of fixtures
+        listed there.
     supports : see :class:`SheetDetails`. The sheet then shows the fixture of the supports, moved so that all
         its holes have names.
     result_hash, unit, first_side, listed_as, bending : see :class:`SheetDetails`.

@@ -1,6 +1,6 @@
 """Tools to write the blocks of a setup sheet: its data with its heights, headings, tables, fields to fill in.
 
-Heights are those of part, pegs, supports and plates; a sheet says which of them nobody has given.
+Heights are those of part, pegs, supports and plates; a sheet marks those that are assumed.
 
 Glossary
 --------
@@ -78,16 +78,15 @@ class SheetHeights:
     Parameters
     ----------
     thickness : of the part.
-    peg_top : of the pegs' upper ends.
+    peg_top : height of the pegs' upper ends.
     head_room : height kept free above the pegs; None for a part that is not a solid.
     supported_by : height of the supports, 0 without them.
     plate_thickness : of the plates through which pegs stand.
     peg_length : of the pegs.
-    bands : for each peg the heights (low, high) at which it presses; None where they are unknown.
+    bands : for each peg the heights (low, high) at which it presses; None if they are unknown.
     assumed : names of the fields above whose values were not given, but assumed.
     clamped_height : of the face on which the clamp on top presses; None without one.
-    dowel : where no peg length was given, a dowel on sale that stands out far enough; None where there is
-        none.
+    dowel : if no peg length was given, a dowel on sale that stands out far enough; None if there is none.
     """
 
     thickness: float
@@ -108,7 +107,7 @@ class SheetHeights:
 
     @property
     def known_up_to(self) -> float:
-        """The height in mm up to which the part is known to have its outline."""
+        """The height in mm up to which the part's outline is known."""
         top = self.thickness if self.head_room is None else self.peg_top + self.head_room
         return min(top, self.thickness)
 
@@ -189,8 +188,8 @@ def find_peg_bands(
     """Return for each peg the heights (low, high) in mm at which it may press; None for a peg where they are
     unknown.
 
-    With supports they are those that the supports were asked with; without supports, those of the solid;
-    without a solid, those of a prism. None is above ``top``, the pegs' top.
+    With supports they are those in the request for supports; without supports, those of the solid; without a
+    solid, those of a prism. No height is above ``top``, the pegs' top.
     """
     supports, solid = details.supports, number_solid(workpiece)
     if supports is not None:
@@ -212,14 +211,13 @@ class SetupSheet:
 
     Parameters
     ----------
-    fixture, workpiece, toolkit : what the sheet shows.
-    details : what does not follow from these.
-    lengths : how lengths are written.
-    cautions : to be written on the sheet.
-    edge_distances : distance in mm of each contact from the nearest edge; inf where there is none.
-    heights : of the set-up; None where the part's thickness is unknown.
-    zero_shown, origin_shown : whether part zero, and the point that places are measured from, are on the
-        plan.
+    fixture, workpiece, toolkit : the fixture of the sheet, with its part and toolkit.
+    details : data that do not follow from these.
+    lengths : format of lengths.
+    cautions : cautions on the sheet.
+    edge_distances : distance in mm of each contact from the nearest edge; inf if there is none.
+    heights : heights of the set-up; None if the part's thickness is unknown.
+    zero_shown, origin_shown : whether part zero, and the origin of places, are on the plan.
     """
 
     fixture: Fixture
@@ -250,8 +248,8 @@ class SetupSheet:
 
     @property
     def seating(self) -> SeatingSentences | None:
-        """The sentences on other places in which the pegs can hold the part; None where the sheet does not
-        show them.
+        """The sentences on other places in which the pegs can hold the part; None if the sheet does not show
+        them.
         """
         if self.details.seating is None:
             return None
@@ -264,13 +262,13 @@ class SetupSheet:
 
     @property
     def plates_noun(self) -> str:
-        """The noun of what pegs stand in, such as "plate" or "jaws"."""
+        """The noun of the pegs' carriers, such as "plate" or "jaws"."""
         first, *others = self.toolkit.plates
         return f"{first.noun}s" if others else first.noun
 
     @property
     def dowel(self) -> str | None:
-        """The pegs and how they fit their holes, in words; None where unknown."""
+        """The pegs and their fit, in words; None if unknown."""
         fit, diameter = self.details.tolerance.fit, 2 * self.toolkit.plates[0].peg_radius
         return self.details.dowel or (None if fit is None else describe_fit(fit, diameter))
 
@@ -320,7 +318,7 @@ def write_heading(column: TextColumn, words: str) -> None:
 
 
 def write_fact_or_field(column: TextColumn, name: str, value: str | None) -> None:
-    """Write a name with its value; where the value is None, with a line to write it on by hand."""
+    """Write a name with its value; if the value is None, with a line to write it on by hand."""
     if value is not None:
         column.write_fact(name, value, bold=True)
         return
@@ -357,7 +355,7 @@ def make_peg_rows(sheet: SetupSheet) -> tuple[list[str], list[list[str]], str]:
 
 
 def write_flats(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write the meaning of the table's flat angles; nothing where no peg has a flat."""
+    """Write the meaning of the table's flat angles; nothing if no peg has a flat."""
     flat = sheet.toolkit.plates[0].flat
     if flat is not None:
         column.write_paragraph(
@@ -369,15 +367,15 @@ def write_flats(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def describe_lie(sheet: SetupSheet) -> str:
-    """Return how far the part is turned from its drawing, in words."""
+    """Return a phrase with the angle by which the part is turned from its drawing."""
     turn = f"{sheet.fixture.pose.written_deg:z.1f}"
     way = "clockwise" if turn.startswith("-") else "counter-clockwise"
     return f"turned {turn.removeprefix('-')}° {way} from its drawing" if float(turn) else "not turned"
 
 
 def describe_pegs_in_holes(sheet: SetupSheet) -> str:
-    """Return a sentence, with a leading space, on the pegs that stand in holes of the part; "" where there
-    are none.
+    """Return a sentence, with a leading space, on the pegs that stand in holes of the part; "" if there are
+    none.
     """
     faces = sheet.workpiece.numbered.inside
     inside = [peg.hole for peg in sheet.fixture.pegs if peg.face in faces]
@@ -389,9 +387,7 @@ def describe_pegs_in_holes(sheet: SetupSheet) -> str:
 
 
 def write_dowel(column: TextColumn, sheet: SetupSheet) -> None:
-    """Write what the pegs are, their fit, length and height above the plates; unknown values get a line to
-    write on.
-    """
+    """Write kind, fit, length and height above the plates of the pegs; unknown values get a line to write on."""
     details, lengths, fit = sheet.details, sheet.lengths, sheet.details.tolerance.fit
     column.y += 3
     write_fact_or_field(column, "dowel and fit", sheet.dowel)
@@ -425,7 +421,7 @@ def write_dowel(column: TextColumn, sheet: SetupSheet) -> None:
 def find_usual_dowel(sheet: SetupSheet, heights: SheetHeights) -> SoldDowel | None:
     """Return the shortest dowel on sale that stands out of the plates as far as usual.
 
-    Its top must not be above ``heights.peg_top``. Returns None where no dowel on sale fits.
+    Its top must not be above ``heights.peg_top``. Returns None if no dowel on sale fits.
     """
     diameter = sheet.toolkit.peg_diameter or 0.0
     usual = min(DOWEL_STANDOUT * diameter, heights.peg_top) + SAME_HEIGHT

@@ -1,8 +1,8 @@
-"""A view of a set-up from the side, to scale, with its heights and the names of what stands in holes.
+"""A view of a set-up from the side, to scale, with its heights and the names of pegs, clamps and supports.
 
-The drawing stands across the top of a page. At its left are dimensions, at its right the heights of all
-levels above the lying plane, below it the names of pegs, clamps and supports. Names are moved apart, so that
-none covers another, each as near to its place as can be.
+The drawing extends across the top of a page. At its left are dimensions, at its right the heights of all
+levels above the lying plane, below it the names of pegs, clamps and supports. Names are moved apart so that
+none covers another, each as near to its place as possible.
 """
 
 from __future__ import annotations
@@ -48,9 +48,9 @@ class SideFigure:
 
     Parameters
     ----------
-    view : what is drawn.
-    lengths : how lengths are written.
-    plates : the noun of what pegs stand in, such as "jaws".
+    view : the view to draw.
+    lengths : format of lengths.
+    plates : the noun of the pegs' carriers, such as "jaws".
     """
 
     view: SideView
@@ -88,9 +88,7 @@ class SideFigure:
 
     @property
     def dimensions(self) -> list[tuple[float, float, str]]:
-        """(from, to, words) of each dimension at the left, heights in mm; the last of
-        them stands outermost.
-        """
+        """(from, to, words) of each dimension at the left, heights in mm; the last of them is outermost."""
         heights, words = self.view.heights, self.lengths.format_length
         low, found = -heights.supported_by, list[tuple[float, float, str]]()
         if heights.supported_by:
@@ -278,9 +276,7 @@ class SideFigure:
             )
 
     def draw_band(self, scene: Scene, page: View, one: SideContact) -> None:
-        """Draw the heights at which a peg presses as a thick line on the part; nothing where they are
-        unknown.
-        """
+        """Draw the heights at which a peg presses as a thick line on the part; nothing if they are unknown."""
         if one.band is None:
             return
         ends = [page((one.touches, height)) for height in one.band]
@@ -364,9 +360,9 @@ def move_apart(
     possible.
 
     ``wanted`` are the wanted middles and ``sizes`` the names' lengths; the result has the order of
-    ``wanted``. Along the line the names stand in the order of their wanted middles. They lie between ``low``
-    and ``high``, or begin at ``low`` where there is too little room. The sum of squares of the moves is
-    least: runs of names that touch move together (pool adjacent violators).
+    ``wanted``. Along the line the names are in the order of their wanted middles. They lie between ``low``
+    and ``high``, or begin at ``low`` if there is too little room. The sum of squares of the moves is least:
+    runs of names that touch move together (pool adjacent violators).
 
     Examples
     --------

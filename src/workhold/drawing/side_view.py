@@ -1,7 +1,7 @@
-"""The contents of a view of a set-up from the side: spans across the view, and what the part hides.
+"""The contents of a view of a set-up from the side: spans across the view, and elements hidden by the part.
 
-Only what is known is drawn. A part from a drawing is a prism. A part from a solid has its outline up to the
-pegs' head room; above it only the part's height is known, and how far its level upper faces reach.
+Only known geometry is drawn. A part from a drawing is a prism. A part from a solid has its outline up to the
+pegs' head room; above that only the part's height and the extents of its level upper faces are known.
 
 Glossary
 --------
@@ -83,8 +83,8 @@ class SideContact:
     is_hidden : whether the part is between it and the viewer.
     hole : for a clamp with a known hole, the hole's horizontal coordinate; None for pegs.
     is_clamp : whether it is the tip of a clamp.
-    heights : heights (low, high) of its carrier, where these are its own; None if it reaches as high as pegs
-        do.
+    heights : heights (low, high) of its carrier, if the carrier has heights of its own; None if it is as high
+        as the pegs.
     """
 
     name: str
@@ -113,10 +113,10 @@ class SideView:
     Parameters
     ----------
     way : direction of view.
-    heights : of everything.
+    heights : all heights of the set-up.
     part : span of the part's outline.
-    upper : span of the part above ``heights.known_up_to``, as far as it is known.
-    feet : spans on which the part lies; the whole outline where no level lower face is known.
+    upper : span of the part above ``heights.known_up_to``, as far as known.
+    feet : spans on which the part lies; the whole outline if no level lower face is known.
     plates, walls : their spans.
     contacts : pegs and clamps.
     pads, pad_radius : the supports, and the radius of each.
@@ -163,7 +163,7 @@ def choose_side_view(
     heights: SheetHeights,
     supports: ChosenSupports | None = None,
 ) -> SideView:
-    """Return the best side view: no wall stands before the part, and most pegs stand clear of each other.
+    """Return the best side view: no wall hides the part, and most pegs are clear of each other.
 
     Among equally good views, the one with the widest least gap between pegs is chosen.
     """
@@ -268,7 +268,7 @@ SHARES = tuple(np.linspace(-1.0, 1.0, 33).tolist())
 def list_side_contacts(
     bench: BenchDrawing, way: ViewDirection, heights: SheetHeights
 ) -> Iterable[SideContact]:
-    """Yield the pegs and clamps of a fixture as they stand in the view."""
+    """Yield the pegs and clamps of a fixture, with their places in the view."""
     size = max(bench.shown.part.width, bench.shown.part.height)
     step = max(size * FINE, 1e-9)
     outlines = bench.sample_outlines(View(1.0, 0.0, 0.0), step)

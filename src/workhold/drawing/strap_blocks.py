@@ -26,7 +26,7 @@ MOST_LOADS = 6
 
 
 def get_hold(fixture: Fixture) -> tuple[StrappedHold, StrapQuestion]:
-    """Return (straps of a fixture of a result, what was asked about straps)."""
+    """Return (the straps of a result's fixture, the request for straps)."""
     hold = fixture.hold
     assert isinstance(hold, StrappedHold)
     return hold, make_question(fixture.listing.result.query)
@@ -74,7 +74,7 @@ def write_force_needed(column: TextColumn, fixture: Fixture, lengths: LengthUnit
 
 
 def write_program_need(column: TextColumn, fixture: Fixture, lengths: LengthUnit, size: float) -> None:
-    """Write the force that the program's tools ask of each strap; nothing where they ask none."""
+    """Write the force of each strap that the program's tools need; nothing if they need none."""
     hold, asked = get_hold(fixture)
     program = fixture.listing.result.query.program
     if hold.program_need is not None and program is not None:
@@ -99,7 +99,7 @@ def write_strap_table(column: TextColumn, fixture: Fixture, lengths: LengthUnit)
 
 
 def write_push(column: TextColumn, hold: StrappedHold, lengths: LengthUnit) -> None:
-    """Write at which point and in which direction a hand pushes the part against the locators."""
+    """Write the point and the direction of the push by hand that presses the part against the locators."""
     if hold.push is None:
         return
     x, y = (lengths.format_number(value) for value in hold.push.at)
@@ -164,7 +164,7 @@ def write_strap_steps(column: TextColumn, sheet: SetupSheet) -> None:
 def write_strap_loads(column: TextColumn, sheet: SetupSheet) -> None:
     """Write the table of loads with the force of each strap that each load needs.
 
-    Where a force of the straps is given, it also has how many times each load that force holds.
+    If a force of the straps is given, it also has the safety of that force against each load.
     """
     hold, asked = get_hold(sheet.fixture)
     query, unit = sheet.fixture.listing.result.query, sheet.lengths.unit

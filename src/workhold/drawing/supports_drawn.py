@@ -214,7 +214,7 @@ def describe_tipping(chosen: ChosenSupports, unit: Unit) -> str:
 
 
 def describe_supports(sheet: SetupSheet, chosen: ChosenSupports) -> str:
-    """Return a sentence on whether the part stands on the supports before it is clamped."""
+    """Return a sentence that says whether the part is stable on the supports before it is clamped."""
     triple = chosen.triple
     inside = f"the centre of its area is {sheet.lengths.format_length(triple.standing)} inside their triangle"
     if triple.stands:

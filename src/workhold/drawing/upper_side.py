@@ -82,8 +82,8 @@ class OutlineMark:
     hole : number of the hole, from 1; 0 for a face.
     place : its middle, in the part's coordinates, measured from the middle of the part's bounding box.
     length : of its outline.
-    radius : of a round hole or an arc; 0 for what is straight or has several faces.
-    bend : of a face, 1 where it bulges out of the part, -1 into it, 0 where it is straight; 2 for holes.
+    radius : radius of a round hole or an arc; 0 for a straight face and a hole with several faces.
+    bend : for a face, 1 if it bulges out of the part, -1 if into it, 0 if it is straight; 2 for holes.
     """
 
     hole: int
@@ -137,8 +137,7 @@ def list_marks(workpiece: Workpiece) -> list[OutlineMark]:
 
 
 def find_distinguishing_marks(workpiece: Workpiece) -> tuple[OutlineMark, OutlineMark] | None:
-    """Return the two most visible marks that are unlike any other mark; None where there are no two such
-    marks.
+    """Return the two most visible marks that are unlike any other mark; None if there are no two such marks.
 
     They are the pair that spans the largest triangle with the part's middle. The triangle's area counts twice
     if one of them is a hole, three times if both are.
@@ -203,9 +202,9 @@ def write_side_up(column: TextColumn, sheet: SetupSheet) -> None:
 
 
 def describe_solid_side_up(solid: SolidOutline, before: FirstSide | None) -> list[str]:
-    """Return sentences on which side of a solid is up, and on the set-up before this one.
+    """Return sentences that name the side of a solid that is up, and relate it to the previous set-up.
 
-    ``before`` is None where there was no set-up before.
+    ``before`` is None for the first set-up.
     """
     up = solid.axis.replace("-", "−")
     sentences = [f"{up} of the file points up."]

@@ -1,11 +1,11 @@
 """A fixture as bodies in space: part, pegs, clamps, walls and plates as prisms with names and kinds.
 
 STEP set-ups, GLB files and the view of the page are made from this one description. The frame is the
-toolkit's in mm, z up, 0 where the part lies: on top of the plates, or of supports that stand out of them.
+toolkit's in mm, z up; z = 0 is the plane on which the part lies, the top of the plates or of the supports.
 
 Glossary
 --------
-body : a thing that can be touched, made of slabs that lie on one another.
+body : a solid object, made of slabs that lie on one another.
 slab : an upright prism between two heights, over a border with openings.
 """
 
@@ -101,8 +101,7 @@ class FixtureBody:
     name : such as "peg L-A1".
     kind : kind of body, which gives it its colour.
     slabs : from below upward.
-    opens : unit vector along which the body moves away when the toolkit is opened; None where it stands
-        still.
+    opens : unit vector along which the body moves away when the toolkit is opened; None for a fixed body.
     """
 
     name: str
@@ -122,8 +121,8 @@ class BodySizes:
     top : height of the pegs' upper ends above the plane on which the part lies.
     peg_length : length of the pegs.
     others : height of the upper ends of clamps and walls above the plane on which the part lies.
-    is_assumed : whether nobody said how thick the part is.
-    support_height : how far the part lies above the plates, on supports; 0 on the plates.
+    is_assumed : whether the part's thickness is assumed because none was given.
+    support_height : height of the part's lower side above the plates, on supports; 0 on the plates.
     """
 
     thickness: float
@@ -198,8 +197,8 @@ def list_fixture_bodies(
     sizes: BodySizes | None = None,
     more: Sequence[FixtureBody] = (),
 ) -> tuple[FixtureBody, ...]:
-    """Return all bodies of a fixture: the part (of a raw block also the one inside), pegs,
-    clamps each followed by its bolt, flat jaws, walls, plates, ``more``.
+    """Return all bodies of a fixture: the part (for a raw block also the finished part inside), pegs, clamps
+    each followed by its bolt, flat jaws, walls, plates, ``more``.
 
     Parameters
     ----------
@@ -248,7 +247,7 @@ def list_fixture_bodies(
 
 
 def make_finished_bodies(fixture: Fixture, workpiece: Workpiece, name: str) -> Iterator[FixtureBody]:
-    """Yield the finished part inside a raw block; nothing for a part that is held itself, or in no result."""
+    """Yield the finished part inside a raw block; nothing without a raw block or for a fixture of no result."""
     query = None if fixture.listed is None else fixture.listed.result.query
     if workpiece.finished is None or query is None or query.raw is None or query.thickness is None:
         return
@@ -275,8 +274,8 @@ def make_part_slabs(part: Workpiece, thickness: float) -> tuple[Slab, ...]:
 
 
 def find_opening_direction(carrier: ShownCarrier) -> Point | None:
-    """Return the unit vector along which a carrier moves when the toolkit is opened;
-    None where it does not clamp.
+    """Return the unit vector along which a carrier moves when the toolkit is opened; None if it does not
+    clamp.
     """
     return None if carrier.clamping is None else reverse(carrier.clamping)
 
@@ -308,9 +307,7 @@ def make_peg_bodies(seen: ShownSetUp, sizes: BodySizes) -> Iterator[FixtureBody]
 
 
 def make_clamp_bodies(seen: ShownSetUp, sizes: BodySizes) -> Iterator[FixtureBody]:
-    """Yield the clamps that are bolted to a plate,
-    each followed by its bolt where the bolt's hole is known.
-    """
+    """Yield the clamps that are bolted to a plate, each followed by its bolt if the bolt's hole is known."""
     for clamp in seen.clamps:
         body = Slab(clamp.make_outline(), (), *sizes.find_height_range(clamp.carrier))
         yield FixtureBody(clamp.tip.hole, BodyKind.CLAMP, (body,), reverse(clamp.clamping))
@@ -324,8 +321,8 @@ def make_clamp_bodies(seen: ShownSetUp, sizes: BodySizes) -> Iterator[FixtureBod
 def make_flat_jaw_bodies(
     seen: ShownSetUp, fixture: Fixture, toolkit: Toolkit, sizes: BodySizes
 ) -> Iterator[FixtureBody]:
-    """Yield fixed jaw, moving jaw, parallels, work stop (if any) and bed;
-    nothing where a fixture has no flat jaws.
+    """Yield fixed jaw, moving jaw, parallels, work stop (if any) and bed; nothing for a fixture without flat
+    jaws.
     """
     jaws, hold = toolkit.flat_jaws, fixture.hold
     if seen.jaws is None or jaws is None or not isinstance(hold, JawHold):
@@ -406,7 +403,7 @@ def compute_inner_arc(side: Line, share: float) -> tuple[float, float]:
 
     Parameters
     ----------
-    share : distance of the disc's centre from the line over its radius, from 0 to 1.
+    share : distance of the disc's centre from the line divided by its radius, from 0 to 1.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-"""Clamps that are bolted to a plate: how they are shown, and for two clamps the ratio of their forces and the
-order in which they are tightened.
+"""Clamps that are bolted to a plate: their display and, for two clamps, the ratio of their forces and the
+order of tightening.
 
-Let the locators carry b1 f1 + b2 f2 where the clamps push with f1 and f2. All three are pressed exactly for
-an open interval of f2 / f1. The clamp freedom is atan(upper end) - atan(lower end): by how much the two
-forces may differ. Where the interval begins at zero the first clamp alone lifts the part off no locator;
-where it has no upper end, the second does not.
+Let the locators carry b1 f1 + b2 f2 when the clamps push with f1 and f2. All three are pressed if f2 / f1
+lies in an open interval. The clamp freedom is atan(upper end) - atan(lower end); it says how much the two
+forces may differ. If the interval begins at zero, the first clamp alone does not lift the part off any
+locator; if it has no upper end, the second does not.
 """
 
 from __future__ import annotations
@@ -114,9 +114,7 @@ class ShownClamp:
 
     @property
     def back(self) -> Point:
-        """Point at which the body begins:
-        the centre of the bolt's hole, or of the tip where no hole is known.
-        """
+        """Point at which the body begins: the centre of the bolt's hole, or of the tip if no hole is known."""
         return self.hole or (self.tip.x, self.tip.y)
 
     def make_outline(self, more: float = 0.0) -> tuple[Segment, ...]:
@@ -174,7 +172,7 @@ def list_shown_clamps(fixture: Fixture, toolkit: Toolkit) -> Iterator[ShownClamp
 
 
 def find_clamping_direction(carrier: Carrier, toolkit: Toolkit) -> Point | None:
-    """Return the unit vector along which a carrier pushes when it clamps; None where it does not move."""
+    """Return the unit vector along which a carrier pushes when it clamps; None if it does not move."""
     if carrier.travel is None:
         return None
     x, y = carrier.travel.unit
@@ -217,7 +215,7 @@ def name_first_clamps(fixture: Fixture) -> tuple[str, ...]:
 
 
 def compute_clamp_force_ratio(fixture: Fixture) -> float:
-    """Return f2 / f1 of a pair of clamps at the working ratio; 0.0 where the fixture has no pair."""
+    """Return f2 / f1 of a pair of clamps at the working ratio; 0.0 for a fixture without two clamps."""
     return 0.0 if fixture.pair is None else fixture.pair.working_ratio
 
 
@@ -265,7 +263,7 @@ def describe_tightening_order(fixture: Fixture) -> str:
 
 
 def describe_clamp_freedom(degrees: float) -> str:
-    """Return in words what a clamp freedom in degrees means for the tightening.
+    """Return a phrase that says how to tighten clamps with a clamp freedom in degrees.
 
     >>> describe_clamp_freedom(90.0)
     'the part is held whatever the two forces are'

@@ -1,15 +1,16 @@
-"""What a tool does to the part on every cutting move: a force in the plane, a torque and an axial force.
+"""The forces of a tool on the part on every cutting move: a force in the plane, a torque and an axial force.
 
 The force F acts at the tool's periphery. It is given, or follows from a power P in kW at S revolutions per
-minute, F = 60 000 P / (pi D S) with D in m. Or it is the sum over the teeth in the cut of Kienzle's
-kc1.1 h^(1 - mc) b. A tooth at the angle a takes a chip h = f sin a thick, f being the feed per tooth. The sum
-is taken where the teeth add up to most (H. El-Hofy, *Fundamentals of Machining Processes*, 2013, 6.3.1).
+minute, F = 60 000 P / (pi D S) with D in m. Or it is the sum over the teeth in the cut of Kienzle's kc1.1
+h^(1 - mc) b. A tooth at the angle a takes a chip of thickness h = f sin a, where f is the feed per tooth. The
+sum is taken at the angle at which it is largest (H. El-Hofy, *Fundamentals of Machining Processes*, 2013,
+6.3.1).
 
-A drill cycle drills, and so does a tool that moves straight down and that its table calls a drill: the forces
-on both sides of the axis cancel, and a torque is left. With kc of the chip h = f sin(point / 2) the power of
-a drill makes F = f D kc / 4 at its periphery, f per turn. It presses down with 0.7 (D / 2) f kc = 1.4 F
-("Common Drilling Formulas", a sheet of tool makers). Any other tool that moves straight down plunges: its
-milling force presses down, with its torque. A move straight up cuts nothing.
+Drilling is a drill cycle, or a straight move down of a tool that its table calls a drill. The forces on both
+sides of the axis cancel, and a torque remains. With kc of the chip h = f sin(point / 2), the power of a drill
+corresponds to F = f D kc / 4 at its periphery, with the feed f per turn. It presses down with 0.7 (D / 2) f
+kc = 1.4 F ("Common Drilling Formulas", a sheet of tool makers). Any other tool that moves straight down
+plunges: its milling force presses down, with its torque. A move straight up cuts nothing.
 
 A program feeds through air as well, down to the work and into a cut from beside it. Forces act along the
 stretches of moves on which a tool meets the stock, see ``model.stock``.
@@ -71,14 +72,14 @@ class CuttingForces:
 
     Parameters
     ----------
-    force : (M,) in the plane, in N; 0 where a move does not cut, and where it drills or plunges.
+    force : (M,) force in the plane, in N; 0 for moves that do not cut, and for moves that drill or plunge.
     torque : (M,) in N mm.
     axial : (M, 2) least and greatest, in N.
-    height : (M,) above the tip at which the force acts, in mm.
+    height : (M,) height above the tip at which the force acts, in mm.
     direction : ``any``, or ``feed`` for a force within 60 degrees of the direction opposite to the feed.
-    reasons : by tool number, a sentence that says what the tool's force follows from.
-    kind : (M,) what a move does, numbers of :data:`CUT_KINDS`.
-    stretches : the stretches of moves along which forces act; None where they act all along their moves.
+    reasons : by tool number, a sentence that gives the basis of the tool's force.
+    kind : (M,) kind of cut of each move, numbers of :data:`CUT_KINDS`.
+    stretches : the stretches of moves along which forces act; None if they act all along their moves.
 
     Raises
     ------
@@ -130,9 +131,7 @@ class CuttingForces:
         return np.asarray((self.force > 0.0) | (self.torque > 0.0))
 
     def make_entry(self, move: int) -> dict[str, Any]:
-        """Return the forces on the move with this index as plain data under "cutting";
-        {} where it does not cut.
-        """
+        """Return the forces on the move with this index as plain data under "cutting"; {} if it does not cut."""
         if self.force[move] == 0.0 and self.torque[move] == 0.0:
             return {}
         axial = self.axial[move].tolist()
@@ -234,18 +233,17 @@ def compute_cutting_forces(
 ) -> CuttingForces | None:
     """Return the forces on moves.
 
-    None is returned where neither ``job`` nor a tool says a force, or a power or material that a force
-    follows from.
+    Returns None if neither ``job`` nor a tool gives a force, a power or a material.
 
     Parameters
     ----------
     job : data for tools that have none of their own.
-    within : stretches of moves on which a tool may cut; None where each cutting move may cut all along.
+    within : stretches of moves on which a tool may cut; None if each cutting move may cut all along.
 
     Raises
     ------
     InputError
-        Where a tool, or the program on a line, does not say what a force follows from.
+        If a tool, or the program on a line, does not give the data for a force.
     """
     if not (job.asks_for_forces or any(tool.cutting.asks_for_forces for tool in tools.values())):
         return None
@@ -289,8 +287,8 @@ def compute_cutting_forces(
 
 
 def describe_force_reason(known: CuttingData) -> str:
-    """Return the words that say where a tool's force comes from, such as "as given."; they follow the force
-    in a sentence.
+    """Return the words that give the basis of a tool's force, such as "as given."; they follow the force in a
+    sentence.
     """
     if known.cutting_force is not None:
         return "as given."
@@ -309,7 +307,7 @@ def compute_peripheral_forces(
     Raises
     ------
     InputError
-        Where the tool, or the program on one of these moves, does not say what the force follows from.
+        If the tool, or the program on one of these moves, does not give the data for the force.
     """
     if known.cutting_force is not None:
         return np.full(len(rows), known.cutting_force)

@@ -1,8 +1,8 @@
-"""A tool of the machine as a stack of upright cylinders, and what is said of how it cuts.
+"""A tool of the machine as a stack of upright cylinders, with its cutting data.
 
-The force, or data that it follows from, are given for each tool or for the whole job. One such datum is the
-material: a chip of thickness h and width b, both in mm, takes the force kc1.1 h^(1 - mc) b (O. Kienzle, "Die
-Bestimmung von Kräften und Leistungen an spanenden Werkzeugen und Werkzeugmaschinen", VDI-Z 94, 1952).
+The force, or data from which it is computed, are given for each tool or for the whole job. One such datum is
+the material: a chip of thickness h and width b, both in mm, takes the force kc1.1 h^(1 - mc) b (O. Kienzle,
+"Die Bestimmung von Kräften und Leistungen an spanenden Werkzeugen und Werkzeugmaschinen", VDI-Z 94, 1952).
 """
 
 from __future__ import annotations
@@ -152,17 +152,17 @@ def to_direction(value: Any) -> CuttingDirection:
 
 @frozen(kw_only=True)
 class CuttingData(CuttingQuestion):
-    """Data on how a tool, or all tools of a job, cut; None for those not known.
+    """Cutting data of a tool, or of all tools of a job; None for those not known.
 
     Parameters
     ----------
-    cutting_force : force at the periphery of the tool, in N; 0 where it hardly cuts.
+    cutting_force : force at the periphery of the tool, in N; 0 if it hardly cuts.
     power : power at the spindle in kW, from which the force follows.
     material : material that is cut, or its name; the force then follows from Kienzle's formula.
-    teeth : how many there are.
+    teeth : number of teeth.
     cut_depth, cut_width : sizes of the cut in mm, along the tool's axis and across the feed.
-    point_angle : of a drill, in degrees.
-    helix_angle : of the flutes, in degrees; a helix pulls the part up.
+    point_angle : point angle of a drill, in degrees.
+    helix_angle : helix angle of the flutes, in degrees; a helix pulls the part up.
     direction : ``any`` for all directions in the plane; ``feed`` for those within 60 degrees of the direction
         opposite to the feed.
 
@@ -289,13 +289,13 @@ class Tool:
     cylinders : in any order; they may overlap.
     diameter : of the flute, in mm.
     name : the workshop's name of it.
-    cutting : what is known of how the tool cuts; tools read from a result file have none, as the file has the
+    cutting : cutting data of the tool; tools read from a result file have none, because the file has the
         forces.
-    flute_length : length of the cutting part from the tip upward, in mm; None where it is as long as the
-        lowest cylinder.
-    kind : kind of tool by its table, such as ``drill``; empty where the table does not say.
-    has_holder : whether one of the cylinders is the holder; None where nobody says, and then one of several
-        cylinders is taken for the holder.
+    flute_length : length of the cutting part from the tip upward, in mm; None if it is as long as the lowest
+        cylinder.
+    kind : kind of tool in its table, such as ``drill``; empty if the table gives none.
+    has_holder : whether one of the cylinders is the holder; None if not known: then one of several cylinders
+        is taken for the holder.
 
     Raises
     ------
@@ -330,7 +330,7 @@ class Tool:
 
     @property
     def is_drill(self) -> bool:
-        """Whether the tool is a drill: the word stands in its kind or, where that is empty, in its name."""
+        """Whether the tool is a drill: the word is in its kind or, if the kind is empty, in its name."""
         return DRILL in (self.kind or self.name).lower()
 
     def to_dict(self) -> dict[str, Any]:

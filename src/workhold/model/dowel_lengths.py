@@ -1,8 +1,7 @@
-"""Dowels as they are sold: the lengths that each diameter is sold in, and how far each stands out of its
-plate.
+"""Dowels on sale: the lengths of each diameter, and the standout of each above its plate.
 
-A dowel sits in its hole at least 1.5 diameters deep (``conventions.DOWEL_DEPTH``), so one of length L stands out by
-no more than L - 1.5 d. Lengths and their sources are in ``data/dowels.toml``.
+A dowel sits in its hole at least 1.5 diameters deep (``conventions.DOWEL_DEPTH``), so the standout of a dowel
+of length L is at most L - 1.5 d. Lengths and their sources are in ``data/dowels.toml``.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ def list_sold_dowels() -> tuple[DowelLengths, ...]:
 
 
 def find_dowel_lengths(diameter: float) -> DowelLengths | None:
-    """Return the lengths in which dowels of a diameter (mm) are sold; None where the diameter is not sold.
+    """Return the lengths in which dowels of a diameter (mm) are sold; None if the diameter is not sold.
 
     >>> find_dowel_lengths(6.0).lengths[:4], find_dowel_lengths(6.35).standard, find_dowel_lengths(7.0)
     ((14.0, 16.0, 18.0, 20.0), 'ASME B18.8.2', None)
@@ -80,7 +79,7 @@ def list_standouts(diameter: float) -> tuple[float, ...]:
 
 @frozen
 class SoldDowel:
-    """A dowel that is sold, and how far it stands out of its plate.
+    """A dowel that is sold, with its standout above its plate.
 
     Parameters
     ----------

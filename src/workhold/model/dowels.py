@@ -6,12 +6,14 @@ vise.
 Glossary
 --------
 limits : smallest and largest diameter that a maker may deliver, in mm.
-position : how far the centre of a hole may be from its place on the lattice, in mm, in any direction.
-clearance : how much wider a hole is than the pin in it; a pin wider than its hole is pressed in and has none.
+position : largest distance in mm, in any direction, of the centre of a hole from its place on the lattice.
+clearance : diameter of a hole minus that of the pin in it; a pin wider than its hole is pressed in and has
+    none.
 
-A design takes every peg to be a circle of the peg radius ρ about its place on the lattice. Let the pin have
-diameter d in a hole of diameter D whose centre is off by p. The pin can be anywhere in its hole, so its
-centre is off by at most p + max(0, D - d)/2, and its surface, along any direction, by at most
+A design assumes that every peg is a circle of the peg radius ρ about its place on the lattice. Let a pin of
+diameter d be in a hole of diameter D whose centre has the error p. The pin can be anywhere in its hole, so
+the error of its centre is at most p + max(0, D - d)/2, and the error of its surface, in any direction, is at
+most
 
     p + max(0, D - d)/2 + |d - 2ρ|/2 .
 
@@ -82,9 +84,9 @@ class DowelFit:
     Parameters
     ----------
     pin, hole : smallest and largest diameters in mm.
-    position : how far the centre of a hole may be from its place, in mm.
-    position_assumed : whether ``position`` is an assumption, because nobody gave it.
-    standard : of the pin, such as "ISO 2338 m6"; empty where none is named.
+    position : largest distance in mm of the centre of a hole from its place.
+    position_assumed : whether ``position`` is assumed because none was given.
+    standard : standard of the pin, such as "ISO 2338 m6"; empty if none is named.
     """
 
     pin: Limits
@@ -95,7 +97,7 @@ class DowelFit:
 
 
 def name_hole_class(nominal: float, hole: Limits) -> str | None:
-    """Return "H7" where the limits of a hole are those of H7 for its nominal diameter in mm; None otherwise.
+    """Return "H7" if the limits of a hole are those of H7 for its nominal diameter in mm, else None.
 
     >>> name_hole_class(6.0, (6.0, 6.012)), name_hole_class(6.0, (5.987, 6.0))
     ('H7', None)
@@ -206,7 +208,7 @@ class JawPlate:
     outline : of the plate.
     hole_diameter : of the dowel holes.
     holes : name and centre of each dowel hole that is drilled; blocked holes are left out.
-    bolts : bolts that hold the plate; None where none are given.
+    bolts : bolts that hold the plate; None if none are given.
     """
 
     title: str
@@ -286,7 +288,7 @@ def list_jaw_plates(
 
 
 def refuse_bolts(plate: JawPlate, unit: Unit) -> None:
-    """Raise InputError where a bolt hole leaves the plate, or overlaps a dowel hole or another bolt hole."""
+    """Raise InputError if a bolt hole leaves the plate, or overlaps a dowel hole or another bolt hole."""
     bolts = plate.bolts
     if bolts is None:
         return

@@ -1,9 +1,10 @@
-"""The order in which fixtures are preferred, and the factors by which doubts about a fixture count against
+"""The order in which fixtures are preferred, and the factors by which drawbacks of a fixture count against
 it.
 
 The order is lexicographic (docs/quality.md, "Which comes first"): unfit; warned or not; steps of the
-effective location error above the best; the angle; figures of quality; identity. The effective location error is the
-location error times the factors below that hold of the fixture. They are data, each with its reason.
+effective location error above the best; the angle; figures of quality; identity. The effective location error
+is the location error times all factors below that apply to the fixture. The factors are data, each with its
+reason.
 """
 
 from __future__ import annotations
@@ -26,14 +27,14 @@ HOUSE_ORDER = ("warned", "error_steps", "angle")
 
 @frozen
 class ErrorFactor:
-    """A factor by which a doubt about a fixture increases its location error in the ranking.
+    """A factor by which a drawback of a fixture increases its location error in the ranking.
 
     Parameters
     ----------
     key : its name.
     times : the factor.
-    words : the doubt, as words that follow "it is" or "it has".
-    reason : why the doubt costs anything, in one sentence.
+    words : the drawback, as words that follow "it is" or "it has".
+    reason : why the drawback counts, in one sentence.
     """
 
     key: str

@@ -1,8 +1,7 @@
-"""Two set-ups of one solid: how the part is turned between them, and which of its faces are cut or touched in
-both.
+"""Two set-ups of one solid: the turn of the part between them, and the faces that are cut or touched in both.
 
-A face of the outline stands for faces of the solid, which keep their numbers whichever side is up. So a face
-that the first set-up cut, or located on, is found again in the second.
+A face of the outline belongs to faces of the solid, whose numbers do not depend on the side that is up. So a
+face that the first set-up cut or used for locating can be identified in the second.
 """
 
 from __future__ import annotations
@@ -26,14 +25,15 @@ NAMES = "xyz"
 
 @frozen
 class FirstSide:
-    """Relation of a set-up to the one before it, in which another side of the part was up.
+    """Relation of a set-up to the previous one, in which another side of the part was up.
 
     Parameters
     ----------
-    up, up_before : axes of the file that point up, in this set-up and in the one before.
-    turned : sentence on how the part is turned after the set-up before.
-    cut : numbers of faces of this outline that were cut in the set-up before and that pegs do not touch now.
-    cut_of_solid : numbers of the solid's faces that were cut in the set-up before.
+    up, up_before : axes of the file that point up, in this set-up and in the previous one.
+    turned : sentence on how to turn the part after the previous set-up.
+    cut : numbers of faces of this outline that were cut in the previous set-up and that pegs do not touch
+        now.
+    cut_of_solid : numbers of the solid's faces that were cut in the previous set-up.
     shared : numbers of the solid's faces that pegs touch in both set-ups.
     """
 
@@ -48,13 +48,13 @@ class FirstSide:
 def compare_with_first_side(
     fixture: Fixture, query: Query, before: Query, located: Fixture | None
 ) -> FirstSide:
-    """Return how the set-up of a fixture relates to the set-up before it: the turn of the part and the shared
+    """Return the relation of a fixture's set-up to the previous set-up: the turn of the part and the shared
     faces.
 
     Parameters
     ----------
-    query, before : queries of this set-up and of the one before.
-    located : the fixture of the set-up before, to find shared faces; None where it had none.
+    query, before : queries of this set-up and of the previous one.
+    located : the fixture of the previous set-up, to find shared faces; None if it had none.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def compare_with_first_side(
 
 
 def get_solid(workpiece: Workpiece) -> SolidOutline:
-    """Return the solid of a part; raise InputError where it has none, or one whose faces have no numbers."""
+    """Return the solid of a part; raise InputError if it has none, or one whose faces have no numbers."""
     if workpiece.solid is None or not workpiece.solid.faces:
         raise InputError(f"{workpiece.name} has no faces of a solid: read both set-ups from the STEP file.")
     return workpiece.solid
@@ -112,7 +112,7 @@ def compute_standing_rotation(axis: str) -> NDArray[np.float64]:
 
 
 def describe_turn(before: str, now: str) -> str:
-    """Return in words how a part is turned between two set-ups; axes in the text are those of the first
+    """Return a phrase that tells how a part is turned between two set-ups; axes in it are those of the first
     set-up's drawing.
 
     Parameters

@@ -44,16 +44,17 @@ class Peg:
 
     Parameters
     ----------
-    carrier : name of the carrier that the peg stands on: "left" or "right" of a vise.
+    carrier : name of the carrier of the peg: "left" or "right" for a vise.
     column, row : the hole, counted from 0.
-    x, y : the peg's centre in mm, in the toolkit's frame (see :class:`Pose`), with the jaw or the clamp closed.
+    x, y : the peg's centre in mm, in the toolkit's frame (see :class:`Pose`), with the jaw or the clamp
+        closed.
     face : number of the face it touches.
-    force : contact force over the clamping force, without unit; with two clamps, over the sum of both at the
-        working ratio. In N it is this times the jaw force.
-    place : name of a clamp's hole or line, used instead of a hole of the carrier; None of other pegs.
-    beside : number of the second face touched, where a corner lies on a wall; None otherwise.
+    force : contact force divided by the clamping force; with two clamps, by the sum of both at the working
+        ratio. Multiply by the jaw force to get N.
+    place : name of a clamp's hole or line, used instead of a hole of the carrier; None for other pegs.
+    beside : number of the second face touched, if a corner lies on a wall; None otherwise.
     flat_deg : direction that the peg's flat faces, in degrees counter-clockwise from the toolkit's x axis;
-        None of a peg that touches with its round side.
+        None for a peg that touches with its round side.
     """
 
     carrier: str
@@ -69,7 +70,7 @@ class Peg:
 
     @property
     def is_on_wall(self) -> bool:
-        """Whether this entry stands for one end of the contact with a wall, where no peg is."""
+        """Whether this entry is one end of the contact with a wall, where there is no peg."""
         return self.carrier == WALL
 
     @property
@@ -83,7 +84,7 @@ class Peg:
 
     @property
     def touching(self) -> str:
-        """Words for what the peg touches, such as "face 3"."""
+        """Words for the touched face or corner, such as "face 3"."""
         return (
             f"face {self.face}"
             if self.beside is None
@@ -100,13 +101,13 @@ class Peg:
 
 @frozen
 class ClampPair:
-    """Data that only a fixture with two clamps has.
+    """The data of the two clamps of a fixture.
 
     Parameters
     ----------
     travels : travel of each clamp from its hole, in mm.
-    ratio : the open interval of the second clamp's force over the first's in which all locators are pressed;
-        the upper end may be infinite.
+    ratio : the open interval of (second clamp's force) / (first clamp's force) in which all locators are
+        pressed; the upper end may be infinite.
     reactions : for each peg, its force per unit of the first clamp's force and per unit of the second's.
     count : number of pairs of clamps that hold the part with the same locators and pose and the same
         directions; only this one is listed.
@@ -167,22 +168,23 @@ class Fixture:
 
     Parameters
     ----------
-    type : name of its arrangement: of a vise "I" for two pegs on each jaw, "II" for three on the left and one
-        on the right.
+    type : name of its arrangement; for a vise "I" with two pegs on each jaw, "II" with three on the left and
+        one on the right.
     pegs : in the order of the arrangement, those of a vise's left jaw first.
     pose : pose of the workpiece in the toolkit's frame.
-    travel : travel in mm of what moves (a jaw, a clamp from its hole, a sliding lattice); of two clamps the
-        first's, see :attr:`travels`.
+    travel : travel in mm of the moving carrier (a jaw, a clamp from its hole, a sliding lattice); for two
+        clamps that of the first, see :attr:`travels`.
     quality : figures of merit by name.
-    direction : clamping direction, such as "-x", or "-x -y" for two clamps; None of a vise.
-    pair : data of the two clamps; None of fixtures without two clamps.
-    listed : place in the result that lists the fixture, which is needed to draw it; None of a fixture made
-        otherwise. It does not count when fixtures are compared.
+    direction : clamping direction, such as "-x", or "-x -y" for two clamps; None for a vise.
+    pair : data of the two clamps; None for fixtures without two clamps.
+    listed : place in the result that lists the fixture, which is needed to draw it; None for a fixture of no
+        result. It is ignored when fixtures are compared.
     seating : the other ways in which its pegs can hold the part, a ``model.seating.Seating``; None where
         seating was not asked for.
-    bent : how far it bends its part, where the result or its file says so; None otherwise. :meth:`bending` computes it.
-    hold : how friction holds it, between flat jaws without pegs, or under straps against locators; None of other
-        fixtures.
+    bent : how far it bends its part, where the result or its file says so; None otherwise. :meth:`bending`
+        computes it.
+    hold : how friction holds it, between flat jaws without pegs, or under straps against locators; None of
+        other fixtures.
     passing, asking : of a file that is verified: what the file says about where the program's tools pass, and
         about the forces that these tools need; None of other fixtures.
     """
@@ -310,11 +312,11 @@ class Fixture:
         Parameters
         ----------
         loads : loads on the part; those of the query if None.
-        jaw_force : of the jaw or the clamps, in N; if None that of the query, else as much as is needed so
-            that no peg lets go.
-        friction : Coulomb's coefficient between pegs and part, to say what it could add; None for none.
-        jaw : what keeps the jaw in place: "screw" (locked), "constant" (a constant force), or the jaw's
-            stiffness over that of one contact.
+        jaw_force : force of the jaw or the clamps in N; if None that of the query, else the least force at
+            which no peg lets go.
+        friction : Coulomb's coefficient between pegs and part, to compute its possible help; None for none.
+        jaw : kind of the jaw: "screw" (locked), "constant" (a constant force), or the ratio of the jaw's
+            stiffness to that of one contact.
 
         Raises
         ------
@@ -339,16 +341,12 @@ class Fixture:
 
     @property
     def placed(self) -> tuple[Peg, ...]:
-        """Pegs and clamps that stand in a hole or a place of their own;
-        the entries for ends of a wall's contact are left out.
-        """
+        """Pegs and clamps that are placed by themselves; the ends of a wall's contact are left out."""
         return tuple(peg for peg in self.pegs if not peg.is_on_wall)
 
     @property
     def figures(self) -> dict[str, float]:
-        """Figures of quality by key and, where the seating is known,
-        its figures; "warnings" is the sum of both.
-        """
+        """Figures of quality by key and, if the seating is known, its figures; "warnings" is the sum of both."""
         if self.seating is None:
             return dict(self.quality)
         figures = {**self.quality, **self.seating.figures}
@@ -373,16 +371,16 @@ class Fixture:
         """Raise InputError for a part or a toolkit that this fixture does not belong to.
 
         A listed fixture belongs to the part and the toolkit of its result. Any other fixture, and a listed
-        one that was changed, must stand on carriers of the toolkit and touch faces of the part.
+        one that was changed, must use carriers of the toolkit and touch faces of the part.
 
         Parameters
         ----------
-        workpiece, toolkit : a :class:`workhold.Workpiece` and what it is held in.
+        workpiece, toolkit : a :class:`workhold.Workpiece` and its toolkit.
 
         Raises
         ------
         InputError
-            Where the part or the toolkit, which the message names, is another one.
+            If the part or the toolkit is another one; the message names it.
         """
         if self.listed is not None:
             result = self.listed.result
@@ -468,12 +466,12 @@ class Fixture:
 
         Parameters
         ----------
-        path : of the file, whose ending says which of these it is.
-        unit : of the lengths on paper, "mm" or "inch".
+        path : path of the file; its ending selects the kind of file.
+        unit : unit of the lengths on paper, "mm" or "inch".
         paper : "a4" or "letter"; None is letter for lengths in inches, else A4.
         day : the date on the sheet; today if None.
         part_name : written instead of the part's own name.
-        dowel : words on the pegs and how they fit their holes; if None, words on the dowels of the tolerance.
+        dowel : words on the pegs and their fit; if None, words on the dowels of the tolerance.
         material : material of the part, such as "aluminium-6061": the sheet then shows how far clamping bends
             the part, see :meth:`bending`.
         bend : length in mm; the sheet warns where the part bends or gives by more.
@@ -558,7 +556,8 @@ class Fixture:
         supports : a result of :meth:`supports`; the model then also shows the pads under the part and the
             clamp on top.
         best : number, from 1, of the set of three among ``supports``.
-        part : the STEP file that the part was read from, for its own shape; a prism of its outline if None.
+        part : the STEP file that the part was read from, for its own shape; None to show a prism of its
+            outline.
         overwrite : whether a file that workhold has not written may be replaced.
 
         Raises
@@ -586,8 +585,8 @@ class Fixture:
 
         Parameters
         ----------
-        around : the part's own solid. The bodies then stand about it where it lies in its model, and it is
-            the first of them. With None they stand in the frame of the toolkit, and the part is a prism.
+        around : the part's own solid, which is then the first body; the others are placed around it in its
+            model. With None the bodies are in the frame of the toolkit, and the part is a prism.
         thickness : thickness of the part in mm; if None that of its solid, else 10.
         supports : a result of :meth:`supports`; its pads under the part and clamp on top are added.
         best : number, from 1, of the set of three among ``supports``.
@@ -733,8 +732,8 @@ class Fixture:
         against the three locators with the least force.
 
         No side clamp presses: the part lies on the plate, and a hand pushes it against the locators until the
-        straps are tight. The straps are the best of a finite set: points of the ring about each hole, every
-        30 degrees at three radii.
+        straps are tight. The straps are the best of a finite set: points on rings about each hole, every 30
+        degrees at three radii.
 
         Parameters
         ----------
@@ -810,8 +809,8 @@ class Fixture:
         best: int = 1,
         clamp_force: float | None = None,
     ) -> Bending:
-        """Return how far clamping bends the part, which springs back after the cut, and how far the part
-        gives at the cutter.
+        """Return how far clamping bends the part (this springs back after the cut), and how far the part
+        moves at the cutter.
 
         Loads and program are those of the query. Needs the extra ``bending``, and takes some seconds.
 
@@ -821,7 +820,7 @@ class Fixture:
             "69000,0.33", and its yield strength in MPa where that is known, as in "69000,0.33,276".
         thickness : thickness of the part in mm; that of its solid or of the query if None.
         jaw_force : in N; if None that of the query, else the one that its loads need, else 1000 N.
-        jaw : what keeps the jaw closed under loads, see :meth:`load_cases`.
+        jaw : kind of the jaw, see :meth:`load_cases`.
         faces : numbers of the faces to be cut, and "top" or "bottom": only their bending counts. Empty for
             all faces.
         part : the STEP file that the part was read from; a part without a solid needs none.
@@ -852,6 +851,6 @@ class Fixture:
 
 
 def refuse_unless(belongs: bool, what: str) -> None:
-    """Raise InputError, which says that the fixture is of another ``what``, unless ``belongs`` is true."""
+    """Raise InputError unless ``belongs`` is true; the message says that the fixture is of another ``what``."""
     if not belongs:
         raise InputError(f"this fixture is of another {what}: give the one that it was designed for.")

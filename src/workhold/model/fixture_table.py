@@ -38,8 +38,8 @@ BLOCK = 4096
 class FixtureTable:
     """N fixtures as arrays; in every row pegs stand in the order of the arrangement.
 
-    The arrays of a large result file are read in parts, on access: go through them by ``take``. Tables are
-    equal where they have the same fixtures in the same order.
+    The arrays of a large result file are read in parts, on access: use ``take`` to go through them. Tables
+    are equal if they have the same fixtures in the same order.
 
     Parameters
     ----------
@@ -123,7 +123,7 @@ class FixtureTable:
         return FixtureTable(*(column[order] for column in self.columns))
 
     def count_in_same_holes(self, index: int) -> int:
-        """Return how many other rows have the arrangement and the holes of row ``index``; 0 for fixtures
+        """Return the number of other rows with the arrangement and the holes of row ``index``; 0 for fixtures
         without pegs.
         """
         if self.column.shape[1] == 0:

@@ -1,4 +1,4 @@
-"""Coefficients of friction that a part is held with: their names, and what is usual where nobody says.
+"""Coefficients of friction between fixture and part: their names and usual values.
 
 Static friction between a smooth steel jaw and a milled steel part that cutting oil has wetted. Makers of chucks print
 0.10 for a smooth clamping surface on a milled part, the least of their tables but for ground ones (0.07): Röhm,

@@ -67,7 +67,7 @@ def describe_work_stop(stop: str | None, offset: float, unit: Unit) -> str:
 
 
 def describe_parallel_places(hold: JawHold, unit: Unit) -> str:
-    """Return a phrase on where the parallels stand: beside the jaws, or how far from them.
+    """Return a phrase on the places of the parallels: beside the jaws, or their distances from them.
 
     >>> from workhold.units import MILLIMETRE
     >>> patch = JawPatch(((0, 5, 0, 9),), (3,))

@@ -1,11 +1,12 @@
-"""How two flat jaws hold a part: what each of them touches, and the figures of that grip.
+"""A part between two flat jaws: the contact of each jaw, and the figures of the grip.
 
-The frame is the vise's. The fixed jaw stands at y = 0 with the part above it, the jaw that moves at y = S, the
+The frame is the vise's. The fixed jaw stands at y = 0 with the part above it, the moving jaw at y = S, the
 opening. x runs along the jaws from the left end of the fixed one, and z is 0 at the part's lower side.
 
 Glossary
 --------
-patch : where two flat faces touch, rectangles in one plane; also a line without width, where an arc touches.
+patch : the contact of two flat faces, as rectangles in one plane; the contact of an arc is a line without
+    width.
 band : the heights between which a face can be touched.
 grip : the height that the bands of both jaws have in common.
 """
@@ -117,8 +118,8 @@ class JawPatch:
 
     @property
     def band(self) -> tuple[float, float]:
-        """Lower and upper height in mm of the range that all rectangles share;
-        lower > upper where they share none.
+        """Lower and upper height in mm of the range that all rectangles share; lower > upper if they share
+        none.
         """
         return max(one[2] for one in self.rectangles), min(one[3] for one in self.rectangles)
 
@@ -129,7 +130,7 @@ class ProgramJawForce:
 
     Parameters
     ----------
-    force : in N, with the safety factor; None where no jaw force is enough.
+    force : jaw force in N, with the safety factor; None if no jaw force is enough.
     line, tool : line of the program, and tool, for which this force is needed.
     move : index of that move in the program, from 0.
     """
@@ -141,7 +142,7 @@ class ProgramJawForce:
 
 
 def find_largest_force(needs: Sequence[float | None]) -> float | None:
-    """Return the largest of some forces in N; None where there is none, and where one of them is None."""
+    """Return the largest of some forces in N; None if there are none, and if one of them is None."""
     known = [need for need in needs if need is not None]
     return max(known) if known and len(known) == len(needs) else None
 
@@ -156,13 +157,13 @@ class JawHold:
     stop : end of the jaws at which the work stop is; None without a stop.
     fixed, moving : contacts of the fixed and of the moving jaw.
     opening : S in mm.
-    above : how far in mm the part stands out above the jaws; None where its thickness is not known.
-    full_contact : whether each jaw can press over all of its contact; if not, loads are not held.
-    clamp_needed_each : jaw force in N that each load needs, in the order of loads; None where no force is
+    above : height in mm of the part above the jaws; None if its thickness is not known.
+    full_contact : whether each jaw can press over its whole contact; if not, loads are not held.
+    clamp_needed_each : jaw force in N that each load needs, in the order of loads; None if no force is
         enough.
     program_need : jaw force that the program's tools need; None without their forces.
-    max_pressure : in MPa, at the jaw force needed; None where it is not known.
-    max_force : rated force of the vise in N; None where nobody says.
+    max_pressure : largest pressure in MPa at the jaw force needed; None if not known.
+    max_force : rated force of the vise in N; None if not known.
     unit_force : given jaw force times the safety factor of the loads, in N; None where no jaw force is given.
     warnings : warnings as sentences.
     parallel_offsets : how far the parallels stand from the fixed and from the moving jaw, in mm; (0, 0) for
@@ -191,12 +192,12 @@ class JawHold:
 
     @property
     def has_moved_parallels(self) -> bool:
-        """Whether a parallel stands away from its jaw, as tools come through the part beside the jaw."""
+        """Whether a parallel stands away from its jaw because tools come through the part beside the jaw."""
         return self.parallel_offsets != (0.0, 0.0)
 
     @property
     def parallels_across(self) -> tuple[float, float]:
-        """Places y in mm of the parallels' outer sides, at which they bear the part."""
+        """Places y in mm of the outer sides of the parallels under the part."""
         near, far = self.parallel_offsets
         return near, self.opening - far
 
@@ -218,22 +219,22 @@ class JawHold:
 
     @property
     def clamp_needed(self) -> float | None:
-        """Jaw force in N that the worst load or tool needs; None without loads and program, and where no
-        force is enough.
+        """Jaw force in N that the worst load or tool needs; None without loads and program, and if no force
+        is enough.
         """
         return find_largest_force(self.forces_needed)
 
     @property
     def forces_needed(self) -> tuple[float | None, ...]:
-        """Jaw forces in N that each load needs, then the one that the program needs, if any; None where no
-        force is enough.
+        """Jaw forces in N that each load needs, then the one that the program needs, if any; None if no force
+        is enough.
         """
         of_program = () if self.program_need is None else (self.program_need.force,)
         return (*self.clamp_needed_each, *of_program)
 
     @property
     def slip_reserve(self) -> float | None:
-        """Rated jaw force over the jaw force needed; inf where no force is needed, None where either is not
+        """Rated jaw force divided by the jaw force needed; inf if no force is needed, None if either is not
         known.
         """
         if self.max_force is None or self.clamp_needed is None:
@@ -244,8 +245,7 @@ class JawHold:
     def safety_reached(self) -> float | None:
         """Factor by which all loads can grow before they need more than the given jaw force.
 
-        It is inf where no force is needed, and None where no jaw force is given or the one needed is not
-        known.
+        It is inf if no force is needed, and None if no jaw force is given or the one needed is not known.
         """
         if self.unit_force is None or self.clamp_needed is None:
             return None
@@ -253,8 +253,10 @@ class JawHold:
 
     @property
     def safety_each(self) -> tuple[float, ...]:
-        """How many times the given jaw force holds each load, then the program; 0 where no force is enough,
-        inf where none is needed. Empty without a given jaw force.
+        """Factor by which each load, then the program, can grow before it needs more than the given jaw
+        force.
+
+        It is 0 if no force is enough, and inf if none is needed. Empty without a given jaw force.
         """
         given = self.unit_force
         if given is None:

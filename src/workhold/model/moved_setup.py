@@ -1,10 +1,9 @@
-"""Where on the shop's plate a set-up stands: in the middle or at a hole asked for, and how far the part hangs
-over.
+"""The place of a set-up on the shop's plate, in the middle or at a chosen hole, and the overhang of the part.
 
 A fixture is listed in the lowest columns and rows. Part, pegs and clamps may all be moved by the same number
-of columns and rows. Where the plate's columns and rows are known, sheet and page show all of it in the middle
+of columns and rows. If the plate's columns and rows are known, sheet and page show the set-up in the middle
 of the plate. Jaws of a vise keep their columns, which are those nearest to the opening; beside a wall the
-rows are kept. Beside a flat jaw with ends, the columns are listed where it holds best.
+rows are kept. Beside a flat jaw with ends, the listed columns are those in which the jaw holds best.
 """
 
 from __future__ import annotations
@@ -54,8 +53,8 @@ def shift_hole_numbers(
     ----------
     move : translation (x, y) in mm.
     shifts : by the name of a plate, the columns and rows to add to the holes on it.
-    travel : travel in mm of the moved fixture, without the share of ``move`` along a clamp's travel, which is
-        added where a clamp is measured from the first column or row.
+    travel : travel in mm of the moved fixture, without the component of ``move`` along a clamp's travel,
+        which is added if a clamp is measured from the first column or row.
     """
     dx, dy = move
 
@@ -89,7 +88,7 @@ def shift_hole_numbers(
 def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list[int], list[int]]:
     """Return (columns, rows), numbers from 0, of the holes of pegs and clamps.
 
-    A number is left out where it stands for no hole: along a clamp's line, where the place of its tip is
+    A number that denotes no hole is left out: the one along a clamp's line, where the place of its tip is
     measured.
     """
     counted = [(peg, toolkit.find_carrier(peg.carrier).counted_axes) for peg in fixture.pegs]
@@ -102,9 +101,10 @@ def find_used_columns_and_rows(fixture: Fixture, toolkit: Toolkit) -> tuple[list
 def count_spare_holes(
     fixture: Fixture, toolkit: Toolkit
 ) -> tuple[tuple[int, int | None], tuple[int, int | None]]:
-    """Return ((left, right), (down, up)): how many columns and rows a set-up may be moved in each direction.
+    """Return ((left, right), (down, up)): the numbers of columns and rows by which a set-up may be moved in
+    each direction.
 
-    None for any number, where the plate has no end; 0 for a direction in which the set-up must not be moved.
+    None for any number, if the plate has no end; 0 for a direction in which the set-up must not be moved.
     """
     if toolkit.strap_set is not None:
         # Bolts and tips have their places beside the locators' as they are listed.
@@ -126,7 +126,7 @@ def find_move_to_middle(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece
     """Return (columns, rows) by which to move a set-up so that it stands in the middle of its plate.
 
     The middle of the bounding box of part, pegs and clamps comes as near to the plate's middle as holes
-    allow; of two equally near places the lower one is taken. A number is 0 where the plate has no end in that
+    allow; of two equally near places the lower one is taken. A number is 0 if the plate has no end in that
     direction or :func:`count_spare_holes` allows no move, as for the columns of two jaws.
     """
     if not toolkit.plates:
@@ -163,12 +163,12 @@ def move_to(fixture: Fixture, toolkit: Toolkit, name: str) -> Hole:
 
     Parameters
     ----------
-    name : of the hole at which the lowest column and the lowest row that it uses are to meet, such as "D4".
+    name : name of the hole to which the set-up's lowest column and lowest row are moved, such as "D4".
 
     Raises
     ------
     InputError
-        For text that names no hole, and for a place in which the set-up cannot stand.
+        For text that names no hole, and for an impossible place of the set-up.
     """
     if not toolkit.plates:
         raise InputError(f"a {toolkit.noun} has no holes to stand at: a work stop says where the part lies.")
@@ -233,7 +233,7 @@ class Overhang:
     Parameters
     ----------
     side : "left", "right", "lower" or "upper".
-    length : by how much, in mm.
+    length : length of the overhang in mm.
     """
 
     side: str
@@ -267,8 +267,8 @@ SIDES = {"left": "left", "right": "right", "lower": "lower side", "upper": "uppe
 def describe_overhang(
     fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece, text: Callable[[float], str]
 ) -> str:
-    """Return a sentence on how far the part hangs over the
-    plates or stands out beyond a jaw; "" where it does not.
+    """Return a sentence on how far the part hangs over the plates or stands out beyond a jaw; "" if it does
+    neither.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Moves of a tool's tip as arrays, and what a cylinder of the tool sweeps on one of them.
+"""Moves of a tool's tip as arrays, and the space that a cylinder of the tool sweeps on one of them.
 
-A program of 100,000 lines has some 300,000 swept pieces. Read from a file, each is packed into bytes as soon
-as its entries are complete, so that no more than a few are objects at a time.
+A program of 100,000 lines has some 300,000 swept pieces. When read from a file, each is packed into bytes as
+soon as its entries are complete, so that only few exist as objects at a time.
 
 Glossary
 --------
@@ -216,7 +216,7 @@ class MoveStretches:
         return cls(rows, np.zeros(len(rows)), np.ones(len(rows)))
 
     def list_shares(self, move: int) -> list[list[float]]:
-        """Return [first, last] share of each stretch of the move with this index; [] where it has none."""
+        """Return [first, last] share of each stretch of the move with this index; [] if it has none."""
         own = slice(*np.searchsorted(self.move, [move, move + 1]).tolist())
         return [list(pair) for pair in zip(self.first[own].tolist(), self.last[own].tolist(), strict=True)]
 
@@ -310,8 +310,8 @@ class SweptPiece:
 
     @property
     def filled(self) -> bool:
-        """Whether the path is the border of a box,
-        all of which counts as swept, at all heights of the move.
+        """Whether the path is the border of a box whose whole inside counts as swept, at all heights of the
+        move.
         """
         return len(self.path) > 2
 

@@ -95,10 +95,10 @@ class NoFixture(Note):
 
     Parameters
     ----------
-    stage : the step of the search that rules the last fixtures out; a toolkit may have its own words for
-        each.
-    line : line of the program whose tool rules out most places for pegs; None where none does.
-    asked : names of requirements that are to blame; empty where the part and the pitch alone are.
+    stage : the step of the search that excludes the last fixtures; a toolkit may have its own words for each
+        step.
+    line : line of the program whose tool excludes most places for pegs; None if there is none.
+    asked : names of requirements that are to blame; empty if only the part and the pitch are.
     """
 
     kind = "no_fixture"
@@ -109,7 +109,7 @@ class NoFixture(Note):
 
     @property
     def words(self) -> str:
-        """Sentence for the stage, in the toolkit's own words where it has some."""
+        """Sentence for the stage, in the toolkit's own words if it has some."""
         wording, place = self.wording, STAGES.index(self.stage)
         together = f"No {wording.two} can touch the part together"
         centre = (
@@ -201,7 +201,7 @@ class NoPair(Note):
 
 @frozen
 class AskedFor(Note):
-    """Note on which requirements of the query leave no fixture; limits of the hardware are not named."""
+    """Note on the requirements of the query that leave no fixture; limits of the hardware are not named."""
 
     kind = "asked_for"
     rules: tuple[str, ...]
@@ -277,7 +277,7 @@ class ToolkitsLeft(Note):
 
 @frozen
 class Many(Note):
-    """Note that only the best of about ``count`` fixtures are listed, as nobody asked for so many."""
+    """Note that only the best of about ``count`` fixtures are listed, because the query did not ask for all."""
 
     kind = "many"
     count: int
@@ -314,7 +314,7 @@ class UndecidedSystem(Note):
     Parameters
     ----------
     faces : faces that the pegs touch.
-    columns, rows : columns count from the first peg of the same jaw, rows from the first peg of all.
+    columns, rows : columns are counted from the first peg of the same jaw, rows from the first peg of all.
     """
 
     kind = "undecided_system"
@@ -354,7 +354,9 @@ class FittedOutline(Note):
 
 @frozen
 class Seated(Note):
-    """Note that of the first ``looked_at`` fixtures only ``kept`` are listed: those seated as asked."""
+    """Note that of the first ``looked_at`` fixtures only ``kept`` are listed, whose seating satisfies the
+    query's rules.
+    """
 
     kind = "seated"
     sentence = (

@@ -123,9 +123,7 @@ class NumberedOutlines:
         return max(min(low, own[0]), 0.0), max(high, own[1])
 
     def list_faces_over(self, segments: Iterable[int]) -> set[int]:
-        """Return the numbers of the solid's faces over these segments;
-        an empty set where they are not known.
-        """
+        """Return the numbers of the solid's faces over these segments; an empty set if they are not known."""
         return {face for segment in segments for face in self.over[segment]} if self.over else set()
 
     def list_segments_under(self, faces: Set[int]) -> list[int]:

@@ -1,17 +1,17 @@
-"""Outlines of carriers with heights of their own, beside the outline that all other pegs meet.
+"""Outlines of carriers with heights of their own, in addition to the outline that all other pegs meet.
 
-A solid is met by a peg that reaches from a to p as the outline U(a, p + head room). So a clamp whose tip
-begins above a flange, or a wall lower than the pegs, meets an outline of its own, with bands of its own. What
-is done about that is the least that is right:
+A peg that extends from height a to p meets a solid in the outline U(a, p + head room). So a clamp whose tip
+begins above a flange, or a wall lower than the pegs, meets a separate outline, with separate bands. This is
+handled as follows:
 
-- A workpiece keeps the outline of each such carrier as a workpiece of its own, without remarks. Segments are
-  numbered on: after those of the workpiece come those of the first outline, and so on, in the order of the
-  toolkit's carriers. So a face's number alone says of which outline it is, and nothing that passes numbers on
-  has to know of outlines.
+- A workpiece keeps the outline of each such carrier as a workpiece of its own, without remarks. Numbers of
+  segments continue: after those of the workpiece come those of the first outline, and so on, in the order of
+  the toolkit's carriers. So a face's number determines its outline, and code that only passes numbers on need
+  not know about outlines.
 - Carriers of the same heights share one outline and its numbers.
 - Contacts of a carrier lie on the touchable faces of its outline, trimmed by that outline alone. The search,
-  the engines and the proof take rows of features for each of two carriers anyway. A clearance that is looked
-  at once more, and a clamp's body, are held to the carrier's outline.
+  the engines and the proof already take separate rows of features for two carriers. The second test of
+  clearance, and the test of a clamp's body, use the carrier's outline.
 - The part lies flush on a wall with the hull of the wall's outline.
 - A face that is avoided stands for the faces of the solid over it, which are avoided in every outline.
 - The diameter, by which moments are scaled and chords are bounded, is that of all outlines together. The

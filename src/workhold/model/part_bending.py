@@ -72,7 +72,7 @@ def find_bending_figure(name: str) -> Figure:
 
 
 def describe_cut_faces(faces: Sequence[int | str]) -> str | None:
-    """Return the faces to be cut in words; None where there are none, which stands for all."""
+    """Return the faces to be cut in words; None if there are none, which means all faces."""
     numbers = ", ".join(str(face) for face in faces if isinstance(face, int))
     level = [str(face) for face in faces if isinstance(face, str)]
     return ", ".join([*level, *([f"faces {numbers}"] if numbers else [])]) or None
@@ -177,7 +177,8 @@ class BentPlace:
 
 @frozen
 class LargestStress:
-    """The largest von Mises stress on the surface by clamping, outside of what is pressed, and where it is.
+    """The largest von Mises stress on the surface under clamping, and its place. Pressed patches do not
+    count.
 
     Parameters
     ----------
@@ -216,22 +217,21 @@ class LargestStress:
 
 @frozen(kw_only=True)
 class BendingFigures:
-    """How far one fixture bends its part, and for what this holds.
+    """How far one fixture bends its part, with the data for which this holds.
 
     Parameters
     ----------
     material : material of the part.
     thickness : height of the part in mm.
-    jaw_force : jaw force in N that the figures hold for; of each strap where straps hold the part.
-    is_stated : whether the jaw force is a convention, because nobody said how hard the jaws press.
-    stiffness : stiffness of the closed jaw over that of one contact; inf for a screw.
+    jaw_force : jaw force in N for which the figures hold; the force of each strap if straps hold the part.
+    is_stated : whether the jaw force is assumed because none was given.
+    stiffness : ratio of the stiffness of the closed jaw to that of one contact; inf for a screw.
     faces : the faces to be cut: face numbers of the outline, "top" and "bottom"; empty for all.
-    below : the pads under the part and the clamp on top; None for a part that lies on its level faces or is held by
-        straps.
-    clamp_distortion : largest movement by clamping alone, where the part is laid against its locators as if
-        it were stiff.
-    give : largest movement at the cutter, or where a load acts, with the bending of pegs; None where nothing
-        acts.
+    below : the pads under the part and the clamp on top; None for a part that lies on its level faces or is
+        held by straps.
+    clamp_distortion : largest movement under clamping alone, after a rigid motion has laid the part against
+        its locators.
+    give : largest movement at the cutter or at a load, including the bending of pegs; None when nothing acts.
     stress : largest stress by clamping on the surface, dents and sharp inner edges not counted.
     elements : number of tetrahedra of the mesh.
     """
@@ -261,11 +261,11 @@ class BendingFigures:
         return [bent.value, bent.error, *gives, stress.value, stress.error, self.jaw_force]
 
     def list_sentences(self, mover: str, unit: Unit) -> list[str]:
-        """Return sentences on how far clamping bends the part and how far it gives at the cutter.
+        """Return sentences that say how far clamping bends the part and how far the part moves at the cutter.
 
         Parameters
         ----------
-        mover : name of what presses, such as "jaw".
+        mover : name of the carrier that presses, such as "jaw".
         """
         force = f"At a {mover} force of {unit.format_force(self.jaw_force)}"
         if self.is_stated:

@@ -1,4 +1,4 @@
-"""The pose of a workpiece in the toolkit's frame, and its contacts where it lies flush against a wall.
+"""The pose of a workpiece in the toolkit's frame, and its contacts when it lies flush against a wall.
 
 The wall runs along x at y = 0 and the part lies above it, so the orientation determines the hull edge
 that lies on the wall. The part touches the wall at the ends of that edge.
@@ -33,7 +33,7 @@ class Pose:
     """Position of a part in the toolkit: a point q of the part is at R(theta) q + (x, y).
 
     Points q are in the part's frame, that of its drawing, in mm. In the toolkit's frame the origin is its
-    first hole, column A and row 1 (of a vise, that of the left jaw); x runs along the columns from A to B, y
+    first hole, column A and row 1 (for a vise, that of the left jaw); x runs along the columns from A to B, y
     along the rows from 1 to 2. Beside a wall y is 0 at the wall.
 
     Parameters
@@ -144,8 +144,8 @@ class FlushContacts:
         numbers.
     touching : for each edge, the numbers of the faces that touch the wall at the start and at the end: one
         face, or the two faces of a corner in ascending order.
-    shared : (E, 2) labels, equal where the error of one face moves several contacts alike: the number of the
-        face, or for a corner a negative number that no other contact has.
+    shared : (E, 2) labels, equal for contacts that an error of one face moves together: the number of the
+        face, or for a corner a unique negative number.
     """
 
     theta: Array
@@ -202,7 +202,7 @@ class FlushContacts:
         wall, for N poses.
 
         Poses are given by ``theta`` (N,) in radians and ``position`` (N, 2) in mm; each part lies on the hull
-        edge with the nearest orientation. The result is NaN where there are no hull edges.
+        edge with the nearest orientation. The result is NaN if there are no hull edges.
         """
         if len(self.theta) == 0:
             return np.full((len(theta), 2), np.nan)

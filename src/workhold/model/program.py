@@ -1,11 +1,12 @@
-"""A program of the machine as what its tools sweep: pieces of the plane, each with heights and a radius.
+"""A program of the machine as the space that its tools sweep: pieces of the plane, each with heights and a
+radius.
 
 Glossary
 --------
 tool : upright cylinders on one axis, their heights above the tip; corners and points are taken as flat ends.
 swept piece : a cylinder of a tool on one move: its axis runs along a path, at heights of the tip + [l, u].
-rapid : a move at full speed (G0), at which nothing may be hit either; all others cut.
-box : a rapid move of which any way inside the box of its ends counts; its path returns and is filled.
+rapid : a move at full speed (G0), which must not collide either; all other moves cut.
+box : a rapid move that may take any way inside the box of its ends; its path is the filled border of the box.
 """
 
 from __future__ import annotations
@@ -71,7 +72,7 @@ class SweptArrays(NamedTuple):
     start, end : (N, 2) ends of the axis's path in mm; of a box two opposite corners.
     bulge, tip_first, tip_last : (N,) bulge of the path, and height of the tip at its start and end in mm.
     cylinder : (N, 3) low and high above the tip, and radius, in mm.
-    box : (N,) True where the whole box of the ends counts as swept.
+    box : (N,) True if the whole box of the ends counts as swept.
     """
 
     line: NDArray[np.int64]
@@ -88,7 +89,7 @@ class SweptArrays(NamedTuple):
 
 @frozen(repr=False, field_transformer=name_number_fields)
 class Program:
-    """A program as it was understood, in the part's coordinates and mm; z is 0 where the part lies.
+    """A program as it was read, in the part's coordinates and mm; z is 0 in the plane on which the part lies.
 
     Parameters
     ----------
@@ -97,13 +98,13 @@ class Program:
     unit : unit in which the program begins, ``mm`` or ``inch``.
     zero : (x, y) in mm on the part where the program has X0 Y0.
     z_zero : height in mm at which the program has Z0.
-    clearance : kept between every cylinder of a tool and everything that holds the part, in mm.
-    rapid : ``straight``, or ``box`` where a control may go another way from end to end.
+    clearance : distance in mm to keep between every cylinder of a tool and the fixture.
+    rapid : ``straight``, or ``box`` if a control may take another way from end to end.
     tools : tools by number; at least those that the program uses.
     moves : in its order.
-    skipped : lines with a move that was left out, such as one to a place of the machine's own.
-    notes : sentences on what was read in one way and could be read in another.
-    forces : forces of the tools on the part for each move; None where nobody asks for them.
+    skipped : lines with a move that was left out, such as one to a machine position.
+    notes : sentences on statements that could be read in more than one way.
+    forces : forces of the tools on the part for each move; None if they are not requested.
     stock : raw stock, within which alone forces act; None where a file does not say.
     is_placed : whether ``forces`` are already limited to the stock around a part.
     raised : by so many mm all heights are greater than those above the part, which lies so high in a raw
@@ -173,14 +174,14 @@ class Program:
         Parameters
         ----------
         path : of the program.
-        tools : file of a tool table, or a diameter or a :class:`Tool` for each number; if None, what the
-            program itself says of its tools.
+        tools : file of a tool table, or a diameter or a :class:`Tool` for each number; if None, the tools
+            described in the program's comments.
         zero : (x, y) in mm on the part where the program has X0 Y0.
         z_zero : height of Z0 in mm, or the side of the part, "top" or "bottom", on which Z0 is.
-        thickness : thickness of the part in mm, needed where Z0 is its top.
-        clearance : distance that tools keep from all that holds the part, in mm.
-        rapid : ``straight``, or ``box`` where a rapid move may run anywhere in the box of its ends.
-        unit : ``mm`` or ``inch`` where the program does not say.
+        thickness : thickness of the part in mm, needed if Z0 is its top.
+        clearance : distance in mm that tools keep from the fixture.
+        rapid : ``straight``, or ``box`` if a rapid move may run anywhere in the box of its ends.
+        unit : ``mm`` or ``inch``, if the program does not give its unit.
         cutting : data on how tools cut, for the forces on the part, where the tool table does not have them:
             :class:`workhold.model.cutting_tool.CuttingData`, or its fields by name.
         start : (X, Y, Z) in mm of the tip at the start, from the program's own zero; None where the program
@@ -219,11 +220,11 @@ class Program:
         return self.list_swept_pieces(-inf, inf)
 
     def list_swept_pieces(self, low: float, high: float) -> tuple[SweptPiece, ...]:
-        """Return the pieces swept at heights in [low, high], each cut to the share of its move at which its
-        cylinder is there.
+        """Return the pieces swept at heights in [low, high], each cut to the share of its move on which its
+        cylinder is at these heights.
 
         Pieces never at such a height are left out. With the cylinder from l to u above the tip, a piece is
-        cut where tip + l is ``high`` and where tip + u is ``low``; boxes are not cut.
+        cut at tip + l = ``high`` and at tip + u = ``low``; boxes are not cut.
 
         Parameters
         ----------
@@ -306,8 +307,8 @@ class Program:
         return row[order], np.concatenate(cylinders)[order]
 
     def find_boxed_moves(self) -> NDArray[np.bool_]:
-        """Return (M,) True for rapid moves along two or three axes,
-        where ``rapid`` is "box": their whole box counts as swept.
+        """Return a mask (M,): True for rapid moves along two or three axes if ``rapid`` is "box". Their whole
+        box counts as swept.
         """
         if self.rapid != "box":
             return np.zeros(len(self.moves), dtype=bool)
@@ -318,7 +319,8 @@ class Program:
     def keep_forces_on(self, loops: Sequence[NDArray[np.float64]]) -> Program:
         """Return the program with forces only on those stretches of moves on which a tool meets the stock.
 
-        Return the program itself where it has no forces or no stock, or its forces are on a part already.
+        Return the program itself if it has no forces or no stock, or if its forces are already limited to a
+        part.
 
         Parameters
         ----------

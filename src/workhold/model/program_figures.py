@@ -28,7 +28,7 @@ class ToolFigures:
     seconds : time of its cutting moves at their feeds, without acceleration and dwells.
     untimed : length of cutting moves without a feed.
     lowest, highest : heights of its tip over all its moves.
-    lowest_cut : least height of its tip on cutting moves; None where it has none.
+    lowest_cut : least height of its tip on cutting moves; None if it has none.
     """
 
     tool: int
@@ -76,7 +76,7 @@ def bound_tip(moves: Moves) -> tuple[Floats, Floats]:
 
 
 def find_arc_extremes(moves: Moves) -> Sequence[Floats]:
-    """Return the points inside arcs at which x or y is extreme, as four arrays (K, 3) with a K of their own.
+    """Return the points inside arcs at which x or y is extreme, as four arrays (K, 3), each with its own K.
 
     At the points of the four arrays the path runs along +x, +y, -x and -y.
     """

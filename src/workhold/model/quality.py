@@ -290,7 +290,7 @@ def fill_figure_rows(quality: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def select_figure_column(quality: NDArray[np.float64], figure: Figure) -> NDArray[np.float64]:
-    """Return the column (N,) of a figure in figures (N, F); NaN where the table lacks it."""
+    """Return the column (N,) of a figure in figures (N, F); NaN if the table lacks it."""
     figures = list_figures_in_columns(quality.shape[1])
     return quality[:, figures.index(figure)] if figure in figures else np.full(len(quality), np.nan)
 
@@ -335,9 +335,9 @@ def to_words(value: Iterable[str] | None) -> tuple[str, ...] | None:
 
 
 def to_tuple(name: str, values: Iterable[T]) -> tuple[T, ...]:
-    """Return the values of an iterable as a tuple; raise InputError for what is not iterable.
+    """Return the values of an iterable as a tuple; raise InputError if ``values`` is not iterable.
 
-    ``name`` is what the message calls the values.
+    ``name`` is the name of the values in the message.
     """
     try:
         return tuple(values)
@@ -418,9 +418,7 @@ def read_asked_ranking(
 
 
 def adapt_ranking_to_loads(ranking: tuple[str, ...], loaded: Loaded) -> tuple[str, ...]:
-    """Return a ranking with the load reaction in place of the clamp amplification;
-    unchanged where there are no loads.
-    """
+    """Return a ranking with the load reaction in place of the clamp amplification; unchanged without loads."""
     if not loaded:
         return ranking
     reaction, bare = FIGURES[LOAD_REACTION].key, FIGURES[CLAMP_AMPLIFICATION].key

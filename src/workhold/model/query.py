@@ -82,7 +82,7 @@ def refuse_other_kinds(query: Query) -> None:
 
 @frozen
 class Query(SearchQuestion):
-    """A part, a toolkit, and all that is asked of the fixtures.
+    """A part, a toolkit, and all requirements of the fixtures.
 
     Parameters
     ----------
@@ -93,9 +93,8 @@ class Query(SearchQuestion):
         restriction.
     rank_by : names of the figures of quality to rank by, the most important first, see ``model.quality``.
         None is the usual order, see :mod:`workhold.model.first_choice`.
-    tolerance : how far pegs and faces may be off, for the location error; None is the toolkit's own where it
-        has one, as presets have, or else the usual one. The workpiece's departure is added to that of the
-        faces.
+    tolerance : tolerances of pegs and faces, for the location error; None is the toolkit's own if it has one,
+        as presets have, or else the usual one. The workpiece's departure is added to that of the faces.
     loads : loads that the fixture must resist.
     best : number of fixtures to search for and list, the best ones; None for all.
     jaw_force : force in N with which the vise is closed, for warnings of pegs that let go, or with which each
@@ -117,8 +116,7 @@ class Query(SearchQuestion):
     thickness : thickness of the part in mm, for the bending of pegs and the grip of flat jaws; None where
         unknown, and for a solid, which has its own.
     friction : coefficients of friction by name where flat jaws or straps hold the part, such as {"jaw":
-        0.15}; None
-        for the usual ones (``model.friction``).
+        0.15}; None for the usual ones (``model.friction``).
     safety : factor on the loads where friction holds the part; None for the usual 2.
     weight : weight of the part in N, without the safety factor, where straps hold it; None counts as 0.
     raw : by how much the raw block of a first operation is larger than the finished part, such as {"side": 3,
@@ -199,10 +197,10 @@ class Query(SearchQuestion):
             )
 
     def lay_in_raw_block(self) -> None:
-        """Take the raw block around the part for the workpiece, where one is asked for.
+        """Replace the workpiece by the raw block around the part, if the query has one.
 
-        Thickness, loads and program, which are given for the finished part, are then those of the block. What
-        is in the block already stays as it is.
+        Thickness, loads and program, which are given for the finished part, are then those of the block. A
+        part that is already in a block is not changed.
         """
         raw = self.raw
         if raw is None:
@@ -238,7 +236,7 @@ class Query(SearchQuestion):
             object.__setattr__(self, "program", raise_program(program, bottom, height))
 
     def refuse_loads_across(self) -> None:
-        """Raise InputError for loads and options that do not fit the way in which the toolkit holds the part.
+        """Raise InputError for loads and options that do not fit the toolkit's way of holding the part.
 
         Pegs hold without friction: no load along z, no friction, no safety factor. Flat jaws have no pegs: no
         contact margin, seating, keep-out zone or largest location error; loads along z, and forces of a
@@ -351,7 +349,7 @@ class Query(SearchQuestion):
 
     @property
     def is_sifted(self) -> bool:
-        """Whether some fixtures that hold the part are left out, because of faces to touch or a largest
+        """Whether some fixtures that hold the part are left out because of faces to touch or a largest
         location error.
         """
         return bool(self.restrictions.touch) or self.max_location_error is not None
@@ -377,8 +375,8 @@ class Query(SearchQuestion):
 
     @property
     def program_to_clear(self) -> tuple[Program, float] | None:
-        """Program whose tools must clear the fixture, and the height of the pegs in mm;
-        None where one of them is missing.
+        """Program whose tools must clear the fixture, and the height of the pegs in mm; None if one of them
+        is missing.
         """
         if self.program is None or self.peg_height is None:
             return None
@@ -391,7 +389,7 @@ class Query(SearchQuestion):
 
     @property
     def asked(self) -> tuple[str, ...]:
-        """Names of all requirements that rule fixtures out: those of the query and limits of the toolkit."""
+        """Names of all requirements that exclude fixtures: those of the query and limits of the toolkit."""
         return (*self.restricted_by, *(limit.rule for limit in self.toolkit.limits))
 
     @property
@@ -426,10 +424,10 @@ class Query(SearchQuestion):
 
     @property
     def without_seating(self) -> Query:
-        """Query to answer first, before seating is worked out: without rules and figures of seating.
+        """Query to answer first, before seating is computed: without rules and figures of seating.
 
-        It asks for at least as many fixtures as seating is wanted for. It is the query itself where no
-        seating is asked for.
+        It asks for at least as many fixtures as need a seating. It is the query itself if no seating is asked
+        for.
         """
         if self.seating is None:
             return self
@@ -450,7 +448,7 @@ class Query(SearchQuestion):
 
     @property
     def has_house_order(self) -> bool:
-        """Whether the ranking is the usual order, where a fixture's rank depends on the best of all."""
+        """Whether the ranking is the usual order, in which a fixture's rank depends on the best of all."""
         return has_house_order(self.rank_by)
 
     @property
@@ -460,11 +458,10 @@ class Query(SearchQuestion):
 
 
 def choose_peg_height(given: float | None, workpiece: Workpiece) -> float:
-    """Return the height in mm up to which pegs, clamps and walls reach:
-    ``given``, else that of the part's solid.
+    """Return the height in mm of pegs, clamps and walls: ``given``, else that of the part's solid.
 
-    Raises InputError where neither is known, and where ``given`` is not the peg height that the solid was
-    read with.
+    Raises InputError if neither is known, and if ``given`` is not the peg height with which the solid was
+    read.
     """
     solid = workpiece.solid
     if given is None and solid is None:

@@ -1,8 +1,9 @@
-"""The raw block of a first operation: a part's bounding box, grown by what is still to be cut away.
+"""The raw block of a first operation: a part's bounding box, grown by the allowances that are still to be cut
+away.
 
-A saw-cut block is what the jaws touch; the finished part lies inside it. The block becomes the workpiece of a
-query, and keeps the finished part. Its z = 0 is the block's lower side, so what is said of the part's heights
-is raised by what is left below the part.
+The jaws touch a saw-cut block; the finished part lies inside it. The block becomes the workpiece of a query,
+and keeps the finished part. Its z = 0 is the block's lower side, so the part's heights are raised by the
+allowance below the part.
 """
 
 from __future__ import annotations
@@ -103,12 +104,12 @@ def enclose_in_block(workpiece: Workpiece, raw: RawBlock) -> Workpiece:
     """Return the raw block around a part as a workpiece, in the part's coordinates, with the part as
     ``finished``.
 
-    Its faces are numbered from that at the least y, counter-clockwise seen from above.
+    Its faces are numbered counter-clockwise seen from above, beginning with the face at the least y.
 
     Raises
     ------
     InputError
-        For a solid whose outline is not that of all its height.
+        For a solid whose outline is not the same at all its heights.
     """
     solid = workpiece.solid
     if solid is not None and solid.peg_height + solid.head_room < solid.height:
@@ -123,31 +124,32 @@ def enclose_in_block(workpiece: Workpiece, raw: RawBlock) -> Workpiece:
 
 
 def measure_jaws_over_part(hold: JawHold, raw: RawBlock, jaws: JawPair) -> float:
-    """Return how far in mm the jaws reach over the lower side of the finished part in a raw block; 0 where
-    they stay below it, inf for jaws of any height.
+    """Return the height in mm of the jaws' top above the lower side of the finished part in a raw block.
+
+    It is 0 if the jaws stay below, and inf for jaws of any height.
     """
     return max(jaws.compute_top(hold.parallels) - raw.bottom, 0.0)
 
 
 def raise_load(load: Load, by: float) -> Load:
-    """Return a load that acts higher by so many mm; one without a height is returned unchanged."""
+    """Return a load that acts ``by`` mm higher; one without a height is returned unchanged."""
     return load if load.height is None else evolve(load, height=load.height + by)
 
 
 def raise_program(program: Program, by: float, height: float) -> Program:
-    """Return a program whose tools move ``by`` mm above the lower side of a raw block, which is what they
-    cut.
+    """Return a program whose heights are raised by ``by`` mm, so that it cuts a raw block with that allowance
+    below the part.
 
-    A program that is raised already is raised by what it lacks.
+    A program that is already raised is raised by the rest.
 
     Parameters
     ----------
-    height : of the block, in mm.
+    height : height of the block, in mm.
 
     Raises
     ------
     InputError
-        Where another stock than the usual one is given for the program's forces.
+        If another stock than the usual one is given for the program's forces.
     """
     rest, moves = by - program.raised, program.moves
     stock = program.stock

@@ -1,4 +1,6 @@
-"""Words about a raw block in a vise: how large it is, what of the part stands above the jaws, what to touch off."""
+"""Words about a raw block in a vise: its size, the part of the workpiece above the jaws, and the sides to
+touch off.
+"""
 
 from __future__ import annotations
 
@@ -47,8 +49,8 @@ def describe_block_size(query: Query, unit: Unit) -> str:
 
 
 def describe_part_in_block(query: Query, unit: Unit) -> str:
-    """Return a sentence on the size of the finished part and what is to be cut off around it; "" without a
-    raw block.
+    """Return a sentence on the size of the finished part and the allowances to be cut off around it; ""
+    without a raw block.
     """
     raw = query.raw
     if raw is None or query.thickness is None:
@@ -101,8 +103,8 @@ def describe_zero_height(query: Query, unit: Unit) -> str:
 
 
 def measure_zero_from_stop(fixture: Fixture, jaws: JawPair, x: float) -> float | None:
-    """Return how far inward from the work stop a place ``x`` of the jaws' frame is, in mm; None without a
-    stop.
+    """Return the distance in mm, inward from the work stop, of a place ``x`` of the jaws' frame; None without
+    a stop.
     """
     hold = fixture.hold
     if not isinstance(hold, JawHold) or hold.stop is None:

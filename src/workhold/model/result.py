@@ -58,8 +58,8 @@ class Result:
     """All fixtures that a query asks for, best first, or the best of them.
 
     A result is a sequence: ``len(result)``, ``result[0]``, ``for fixture in result``. ``Fixture`` objects are
-    made when asked for; the arrays behind them are in ``table``. Results that say the same are equal.
-    Some of the fixtures are a result again, see :meth:`choose`: ``result[:3]``, ``result[[4, 7]]``,
+    made on access; the arrays behind them are in ``table``. Results with equal contents are equal. A
+    selection of the fixtures is a result again, see :meth:`choose`: ``result[:3]``, ``result[[4, 7]]``,
     ``result[mask]``, ``result.where(...)``.
 
     Parameters
@@ -68,23 +68,23 @@ class Result:
     table : the fixtures listed, best first.
     found : number of fixtures found of each arrangement, by its name. Fewer are listed when only the best
         were kept, or when the search was stopped while they were sorted or written.
-    distinct : number of fixtures found, those counted once that a symmetry of the part carries into each
-        other.
-    complete : False when the search was interrupted; the fixtures listed are valid all the same.
+    distinct : number of fixtures found; fixtures that a symmetry of the part carries into each other count
+        once.
+    complete : False when the search was interrupted; the listed fixtures are valid nevertheless.
     notes : notes for the user, see ``model.notes``: each prints as a sentence, and has data. A string given
         becomes a note. Where the outline departs from the drawn one, a note on that is added.
     statistics : how much work the search was. It counts contact features, chord curves, sliding pairs, pairs
         of curves compared and those whose crossings were sought. It also counts simultaneous contacts
         examined (all four inside their features).
-    proof : the account of the search, see :class:`workhold.model.search_report.ProofReport`; None for a result that
-        came without.
+    proof : the account of the search, see :class:`workhold.model.search_report.ProofReport`; None for a
+        result that came without.
     pairs, seats : with two clamps, number of pairs of clamps that hold the part, and number of seats with
         their pairs of directions. None for other toolkits, and where only the best were sought.
     seating : where else the pegs can hold the part, for the first fixtures, as many as there are entries.
     holds : for each fixture between flat jaws or under straps, how it holds the part; () for other toolkits.
     bending : how far fixtures bend their part, by index; only of those that were bent, see :meth:`bend`.
-    bent_by : key of the figure of bending by which those with ``bending`` are listed first, "clamp_distortion" or
-        "give"; None where they stand in the order of the search.
+    bent_by : key of the figure of bending by which those with ``bending`` are listed first,
+        "clamp_distortion" or "give"; None where they stand in the order of the search.
     least_effective_error : least effective location error in mm among the fixtures that are fit and without
         warning, or among those that come nearest to that; steps of error count from it
         (``model.first_choice``). None where the order has no steps, and in results older than these.
@@ -117,7 +117,7 @@ class Result:
 
     @property
     def reasons(self) -> tuple[Note, ...]:
-        """Notes without the one on an outline that departs from the drawn one."""
+        """Notes without the one on an outline that differs from the drawn one."""
         return tuple(note for note in self.notes if not isinstance(note, FittedOutline))
 
     @property
@@ -236,8 +236,8 @@ class Result:
 
         Parameters
         ----------
-        condition : asked of each fixture; or a mask (N,) of booleans, such as a column of :meth:`to_pandas`
-            compared with a number.
+        condition : function called with each fixture; or a mask (N,) of booleans, such as a column of
+            :meth:`to_pandas` compared with a number.
 
         Examples
         --------
@@ -321,7 +321,7 @@ class Result:
 
     @property
     def words(self) -> str:
-        """Phrase that says how many fixtures are listed, of which part and in what toolkit."""
+        """Phrase with the number of listed fixtures, the part and the toolkit."""
         kinds = ", ".join(f"{count:,} of type {kind}" for kind, count in self.counts.items())
         whole = "" if self.complete else ", interrupted"
         only = "the best " if len(self) < sum(self.found.values()) or self.query.best is not None else ""
@@ -379,8 +379,8 @@ class Result:
         ----------
         rank : rank of the fixture shown first.
         usual : force in N whose arrow is drawn at the usual length.
-        jaw_force : force of the jaw or the clamps, in N; as much as is needed if None.
-        jaw : what keeps the jaw in place: "screw", "constant", or the jaw's stiffness over that of one
+        jaw_force : force of the jaw or the clamps in N; None for the force needed.
+        jaw : kind of the jaw: "screw", "constant", or the ratio of the jaw's stiffness to that of one
             contact.
         supports : keywords of :meth:`Fixture.supports`, such as ``{"thickness": 12}``, to show the best three
             supports of each fixture with the clamp on top; None for none.
@@ -395,8 +395,8 @@ class Result:
         return make_result_widget(self, rank, usual=usual, jaw_force=jaw_force, jaw=jaw, supports=supports)
 
     def why_none(self) -> NoFixtureNote:
-        """Return why there is no fixture: what each rule takes away,
-        the nearest miss, and changes that would help.
+        """Return why there is no fixture: the number that each rule removes, the nearest miss, and changes
+        that would help.
 
         A notebook shows it as tables; it takes longer than the search did.
 
@@ -502,8 +502,8 @@ class Result:
 
         Parameters
         ----------
-        best : how many fixtures.
-        each : how many sets of three for each of them. All other parameters are those of
+        best : number of fixtures.
+        each : number of sets of three for each of them. All other parameters are those of
             :meth:`Fixture.supports`.
 
         Raises

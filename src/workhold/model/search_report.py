@@ -1,7 +1,7 @@
-"""What a search reports besides its fixtures and notes: its proof, and why there is no fixture.
+"""The reports of a search besides its fixtures and notes: its proof, and why there is no fixture.
 
-A proof shows what was examined, and what could not be decided. An explanation says what each rule took away,
-the nearest miss, and what would help.
+A proof counts the examined candidates and lists those that could not be decided. An explanation has the
+number of candidates that each rule removed, the nearest miss, and changes that would help.
 """
 
 from __future__ import annotations
@@ -43,12 +43,12 @@ class UndecidedCandidate:
     ----------
     type : name of the arrangement, with the clamping direction if any, such as "II" or "clamp -x".
     faces : the faces touched; for a pair of chords, those of the tail and the head of each chord.
-    columns, rows : holes of the pegs, columns counted from the first peg on the same jaw, rows from the first
-        peg on the left jaw. A clamp has two entries: the number of its line from the first locator's line,
-        and 0.
+    columns, rows : holes of the pegs; columns are counted from the first peg on the same jaw, rows from the
+        first peg on the left jaw. A clamp has two entries: the number of its line from the first locator's
+        line, and 0.
     theta_deg : orientation of the workpiece in degrees near which the candidate would be.
     reason : why it is not decided, in one sentence without a full stop.
-    reach_deg : largest distance in degrees of the orientation from ``theta_deg``; None where it is unbounded,
+    reach_deg : largest distance in degrees of the orientation from ``theta_deg``; None if it is unbounded,
         and for a pair of chords, which exists at ``theta_deg``.
     """
 
@@ -69,10 +69,10 @@ class ProofReport:
     ----------
     cells : number of ranges of orientation examined, summed over the types.
     candidates : number of sets of four contacts that the bounds of the chord curves allow.
-    discarded_by_bound : number of candidates that break a rule everywhere within their error.
+    discarded_by_bound : number of candidates that break a rule everywhere within their error bounds.
     verified : number of candidates proven to be fixtures, before rows and the largest opening are checked; a
         candidate found from two sides, as at a joint, counts twice.
-    escalated : number of candidates that their certificates left open: these were decided by interval
+    escalated : number of candidates that their certificates did not decide: these were decided by interval
         arithmetic, or given up.
     undecided : number of candidates that interval arithmetic could not decide either.
     """
@@ -121,12 +121,12 @@ class NearestMiss:
 
 @frozen
 class HelpfulChange:
-    """A change of what was asked for, and how many fixtures there are with it.
+    """A change of the request, and the number of fixtures with it.
 
     Parameters
     ----------
-    change : in a few words, such as "without avoiding faces 1, 4".
-    fixtures : how many there are then.
+    change : the change in a few words, such as "without avoiding faces 1, 4".
+    fixtures : number of fixtures with the change.
     complete : False when there are more fixtures, because their search was cut short.
     fields : fields of the toolkit that the change sets; None when it changes something else.
     rules : requirements that the change leaves out, all at once, named as in ``Query.asked``.
@@ -147,11 +147,10 @@ class Explanation:
     ----------
     contacts : number of sets of four pegs of the two jaws that touch the part simultaneously, before any
         rule.
-    removals : numbers that each rule removes, in the order of application; after the last one nothing is
-        left.
+    removals : numbers that each rule removes, in the order of application; none is left after the last one.
     nearest : the nearest miss, if four pegs can touch the part at all.
     helps : changes that were tried and that give fixtures, most fixtures first.
-    no_contacts : why no four pegs can touch the part simultaneously; None where some can.
+    no_contacts : reason why no four pegs can touch the part simultaneously; None if some can.
     """
 
     contacts: int
@@ -177,7 +176,7 @@ class Explanation:
     def asked_words(self) -> str:
         """Sentence that names the requirements in :attr:`taken_by`.
 
-        It is "" where there are none, or only the rule applied last.
+        It is "" if there are none, or only the rule applied last.
         """
         if self.taken_by in ((), (self.last_rule,)):
             return ""

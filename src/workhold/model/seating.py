@@ -64,7 +64,7 @@ class SeatContact:
 
     @property
     def words(self) -> str:
-        """Words for what the peg touches, such as "face 3"."""
+        """Words for the face or corner that the peg touches, such as "face 3"."""
         return f"corner {self.face}" if self.corner else f"face {self.face}"
 
     def to_fields(self) -> dict[str, int]:
@@ -87,15 +87,15 @@ class Seat:
     Parameters
     ----------
     kind : fixture, corner, pocket, curved, loose, or unsettled.
-    pose : of the part, turned over (x to -x in its own frame) where it is ``mirrored``.
+    pose : pose of the part; if ``mirrored``, of the part turned over (x to -x in its own frame).
     jaw_separation : jaw separation S in mm; for a clamp, its travel.
     difference : ``jaw_separation`` minus that of the fixture, in mm.
-    mirrored, same_place : whether the part is turned over, and whether it covers the fixture's place all the
-        same.
+    mirrored, same_place : whether the part is turned over, and whether it covers the same area as in the
+        fixture.
     contacts, forces : contacts, and for each its force per unit of jaw force; empty for kinds loose and
         unsettled.
-    depth : how far in mm the jaws must open before the part can leave this seat for another; None where it
-        never can, or where that is unknown.
+    depth : opening in mm beyond which the part can leave this seat for another; None if it never can, or if
+        that is unknown.
     is_own : whether the seat is the fixture's own pose.
     """
 
@@ -112,8 +112,8 @@ class Seat:
 
     @property
     def is_wrong(self) -> bool:
-        """Whether the part lies elsewhere than in the fixture:
-        neither its own seat nor one that covers the same place.
+        """Whether the part lies elsewhere than in the fixture: in neither its own seat nor one that covers
+        the same area.
         """
         return not (self.is_own or self.same_place)
 
@@ -180,7 +180,7 @@ class Cage:
     Parameters
     ----------
     theta_deg, x, y : (least, largest) turn in degrees, and shift of the centre of its box in mm. The ranges
-        are never too large, and too small by at most ``CAGE_SHORT``.
+        are never too large; they are too small by at most ``CAGE_SHORT``.
     """
 
     theta_deg: tuple[float, float]
@@ -190,18 +190,18 @@ class Cage:
 
 @frozen(repr=False)
 class Seating:
-    """Seats that pegs and part of a fixture have, and the region from which closing leads into the fixture's
-    own seat.
+    """The seats of a part on the pegs of a fixture, and the region from which closing leads into the
+    fixture's own seat.
 
     Parameters
     ----------
-    capture_opening : largest opening of the jaws in mm at which a part let go in the cage still settles in
-        its place; None where it never gets out.
+    capture_opening : largest opening of the jaws in mm from which a part in the cage still settles in its
+        place; None if it never gets out.
     room_factor : sum of the contact forces per unit of jaw force: jaws opened by s mm leave a gap of s /
         room_factor at all pegs at once.
-    lowest_pass : pass through which the part first gets out of the cage; None where it never does.
-    way_out : how far in mm the jaws open before the part can leave all pegs; None where it never can.
-    cage, placing : ranges by which the part may be off its place; None where the cage is unbounded.
+    lowest_pass : pass through which the part first gets out of the cage; None if it never does.
+    way_out : opening in mm beyond which the part can leave all pegs; None if it never can.
+    cage, placing : ranges of the part's distance from its place; None if the cage is unbounded.
     sticking_friction : coefficient of friction below which the part cannot stick near its seat.
     stop : the separation in mm at which the vise is closed, or opened, without the part; None where nothing
         stops it.
@@ -230,7 +230,7 @@ class Seating:
 
     @property
     def words(self) -> str:
-        """Phrase on how far the jaws may be open, and on the number of wrong seats."""
+        """Phrase with the allowed opening of the jaws and the number of wrong seats."""
         caught = (
             "never lost" if self.capture_opening is None else f"caught below {self.capture_opening:.3f} mm"
         )
@@ -259,7 +259,7 @@ class Seating:
 
     @property
     def is_capture_unknown(self) -> bool:
-        """Whether the cage could not be worked out, so that the capture opening is unknown."""
+        """Whether the cage could not be computed, so that the capture opening is unknown."""
         return self.lowest_pass is None and self.capture_opening is not None
 
     @property
@@ -285,7 +285,7 @@ class Seating:
     def find_least_reading(self, opening: float | None = None) -> float | None:
         """Return the least difference in mm between the fixture's opening and that of a wrong seat.
 
-        Return None where there is no wrong seat.
+        Return None if there is no wrong seat.
         """
         return min((abs(seat.difference) for seat in self.list_wrong_seats(opening)), default=None)
 
@@ -331,7 +331,7 @@ class Seating:
 
     @property
     def figures(self) -> dict[str, float]:
-        """Figures of ``model.quality.SEATING_FIGURES`` by key; inf where one has no bound."""
+        """Figures of ``model.quality.SEATING_FIGURES`` by key; inf if one has no bound."""
         known = {
             "capture_opening": self.capture_opening,
             "drop_room": self.drop_room,

@@ -1,13 +1,12 @@
-"""Part zero (X0 Y0 of the program), and the length to set for each thing that moves.
+"""Part zero (X0 Y0 of the program), and the length to set for each moving carrier.
 
-Where nothing is asked for, part zero is the origin of the drawing, because the CAM system took the same
-drawing. If the origin lies outside the part's outside dimensions, part zero is the lower left corner of the
-part as drawn. So a part cut out of a large assembly, far from its origin, does not get a zero beside the
-machine.
+By default part zero is the origin of the drawing, because the CAM system uses the same drawing. If the origin
+lies outside the part's outside dimensions, part zero is the lower left corner of the part as drawn. So a part
+cut out of a large assembly, far from its origin, does not get a zero beside the machine.
 
-The setting of a vise is its opening. That of a clamp bolted in a hole is the stroke, from the
-hole to the tip. Where only the clamp's line is known, it is the distance of the tip from the first column or
-row. Every picture, sheet and table shows it.
+The setting of a vise is its opening. The setting of a clamp bolted in a hole is the stroke, from the hole to
+the tip. If only the clamp's line is known, it is the distance of the tip from the first column or row. Every
+picture, sheet and table shows the setting.
 """
 
 from __future__ import annotations
@@ -61,11 +60,11 @@ def choose_part_zero(
 
     Parameters
     ----------
-    workpiece : the part; of a raw block the finished part in it counts.
+    workpiece : the part; for a raw block the finished part in it counts.
     asked : "corner" (the lower left one of the outside dimensions), "centre" (of the same), "hole N" (its
         centre), "X,Y" or two numbers. None is the default at the head of this module. Holes are counted from
         1 as in the inset of the setup sheet.
-    unit : of the numbers.
+    unit : unit of the numbers.
 
     Raises
     ------
@@ -141,15 +140,15 @@ def find_hole_centers(workpiece: Workpiece) -> list[Point]:
 
 @frozen
 class Mounting:
-    """Words for how a clamp is put on its plate; ``{clamp}`` is its name, ``{place}`` its hole or line.
+    """Words for putting a clamp on its plate; ``{clamp}`` is its name, ``{place}`` its hole or line.
 
     Parameters
     ----------
     label : text above the place.
-    there : phrase on where the clamp is.
+    there : phrase on the place of the clamp.
     put : instruction for putting it on the plate.
-    how : what to measure, a sentence without its end; ``{title}`` is the setting's title.
-    then : what to measure once the tip touches, with places for the setting's title and name.
+    how : beginning of a sentence on the length to measure; ``{title}`` is the setting's title.
+    then : the length to measure once the tip touches, with placeholders for the setting's title and name.
     """
 
     label: str
@@ -207,7 +206,7 @@ class LengthSetting:
 
     @property
     def mounting(self) -> Mounting:
-        """Words for how the clamp is put on its plate."""
+        """Words for putting the clamp on its plate."""
         return MOUNTINGS[self.carrier.measure]
 
     @property

@@ -1,16 +1,16 @@
-"""What is visible of a toolkit that holds a part: plates, holes, pegs, clamps and walls, and the lengths to
-set. Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this one description.
+"""The visible elements of a toolkit that holds a part: plates, holes, pegs, clamps and walls, and the lengths
+to set. Pictures, sheets, DXF drawings, STEP assemblies and the page all draw from this one description.
 
 Glossary
 --------
-reach : the extent of part, pegs and bolts of straps, widened by one pitch or a fourteenth of the extent, and as
-    far along the travel as carriers slide. The holes within it show. A lattice without a number of columns or rows goes on
-    before column A and row 1, so that the plate is under the whole part. Those holes have no names, and their
-    numbers are negative.
-plate : the rectangle around the holes that show, half a pitch wider.
-broken side : a side of a plate where the carrier goes on past what shows.
+reach : the extent of part, pegs and bolts of straps, widened by one pitch or a fourteenth of the extent, and
+    along the travel by the distance that carriers slide. The holes within it are shown. A lattice without a
+    number of columns or rows continues before column A and row 1, so that the plate is under the whole part.
+    Those holes have no names, and their numbers are negative.
+plate : the rectangle around the shown holes, half a pitch wider.
+broken side : a side of a plate where the carrier extends beyond the shown area.
 facing side : a side towards another carrier; there a plate takes less than half of the gap between the holes.
-clamp : a carrier that is bolted to a plate and has no plate of its own: its body reaches from its hole to its
+clamp : a carrier that is bolted to a plate and has no plate of its own; its body extends from its hole to its
     tip.
 """
 
@@ -84,7 +84,7 @@ def list_strap_bolts(fixture: Fixture, toolkit: Toolkit) -> list[Point]:
 def list_strap_holes(fixture: Fixture, toolkit: Toolkit) -> frozenset[tuple[int, int]]:
     """Return (column, row) of the plate's holes that bolts of straps and the supports under the part occupy.
 
-    Bolts count only where they stand in dowel holes. The set is empty without straps.
+    Bolts count only if they stand in dowel holes. The set is empty without straps.
     """
     straps, hold = toolkit.strap_set, fixture.hold
     if straps is None or not isinstance(hold, StrappedHold):
@@ -137,8 +137,8 @@ def find_cells_in_reach(carrier: Carrier, travelled: float, reach: Box, held: Po
 def find_numbers_in_reach(low: float, high: float, pitch: float, count: int | None, held: float) -> range:
     """Return the numbers of columns or rows at distances in [low, high] mm from the first one; at least one.
 
-    ``count`` is how many columns or rows there are; None for a lattice without an end. Such a lattice has
-    negative numbers where ``held`` (mm) is negative: the range then begins at held / pitch, rounded.
+    ``count`` is the number of columns or rows; None for a lattice without an end. Such a lattice has negative
+    numbers if ``held`` (mm) is negative: the range then begins at held / pitch, rounded.
     """
     last, first = max(floor(high / pitch + ROUNDING), 0), max(ceil(low / pitch - ROUNDING), 0)
     if count is not None:
@@ -206,14 +206,14 @@ class ShownHole:
 
 @frozen
 class ShownCarrier:
-    """A carrier with a plate, as pictures show it; lengths in mm.
+    """A carrier with a plate, for pictures; lengths in mm.
 
     Parameters
     ----------
     carrier : the carrier in the toolkit.
     travelled : distance in mm that it has slid.
-    columns, rows : numbers of the columns and rows whose holes show.
-    plate : rectangle of the plate that shows.
+    columns, rows : numbers of the columns and rows whose holes are shown.
+    plate : visible rectangle of the plate.
     broken, facing : sides of the plate, see the glossary.
     pegs : pegs of the fixture that stand on it.
     bolted : pegs of clamps that are bolted to it.
@@ -285,9 +285,7 @@ class ShownCarrier:
         return min(radius, 0.42 * pitch) if radius > 0.05 * pitch else pitch / 7
 
     def list_holes(self, most: float = inf) -> list[ShownHole]:
-        """Return the holes that show, row by row;
-        where there are more than ``most``, only those near a used one.
-        """
+        """Return the visible holes, row by row; if there are more than ``most``, only those near a used one."""
         cells = [(column, row) for row in self.rows for column in self.columns]
         if len(cells) > most:
             near = range(-NEAR, NEAR + 1)
@@ -306,14 +304,14 @@ class ShownCarrier:
 
 @frozen
 class ShownLength:
-    """A length to set, and the axes square to it that it is measured between.
+    """A length to set, and the two axes, square to it, between which it is measured.
 
     Parameters
     ----------
     setting : the length.
-    axes : the two axes, each from left to right or upward. For a plate that slides, one lies across the
-        plates that stand still, the other across the sliding plate. For a clamp they lead from the clamp to
-        the plate's upper or right side.
+    axes : the two axes, each from left to right or upward. For a sliding plate, one lies across the fixed
+        plates, the other across the sliding plate. For a clamp they lead from the clamp to the plate's upper
+        or right side.
     is_upright : whether it is measured along y.
     """
 
@@ -324,14 +322,15 @@ class ShownLength:
 
 @frozen
 class ShownWall:
-    """A straight wall along x at y = 0, as pictures show it; lengths in mm.
+    """A straight wall along x at y = 0, for pictures; lengths in mm.
 
     Parameters
     ----------
     carrier : the wall's carrier in the toolkit.
-    bar : rectangle of the wall that shows; the part lies above it.
+    bar : visible rectangle of the wall; the part lies above it.
     ends : x of both ends of the part's contact with the wall.
-    standouts : how far the part reaches beyond the wall's left and right end; None where the wall is endless.
+    standouts : distances by which the part extends beyond the wall's left and right end; None for an endless
+        wall.
     """
 
     carrier: Carrier
@@ -342,12 +341,12 @@ class ShownWall:
 
 @frozen
 class ShownJaws:
-    """Two flat jaws seen from above, as pictures show them; lengths in mm.
+    """Two flat jaws seen from above, for pictures; lengths in mm.
 
     Parameters
     ----------
-    fixed, moving : the jaws, as thick as they are drawn.
-    parallels : the two under the part, as wide as they are drawn; none where it lies on the bed.
+    fixed, moving : the jaws, with their drawn thickness.
+    parallels : the two under the part, with their drawn width; none if the part lies on the bed.
     stop : the work stop; None without one.
     """
 
@@ -365,16 +364,16 @@ class ShownJaws:
 
 @frozen
 class ShownSetUp:
-    """A toolkit with a part, as pictures show it.
+    """A toolkit with a part, for pictures.
 
     Parameters
     ----------
-    carriers : those that have a plate, those that stand still first.
+    carriers : carriers with a plate, the fixed ones first.
     clamps : those that are bolted to a plate.
-    measured : the lengths to set, one for each thing that moves.
+    measured : the lengths to set, one for each moving carrier.
     part : extent of the part in mm.
     walls : walls that the part lies flush against.
-    jaws : two flat jaws that hold it by friction; None of other toolkits.
+    jaws : two flat jaws that hold it by friction; None for other toolkits.
     """
 
     carriers: tuple[ShownCarrier, ...]
@@ -397,12 +396,12 @@ class ShownSetUp:
 
     @property
     def pitch(self) -> float:
-        """Smallest distance between neighbouring holes in mm; :data:`USUAL_PITCH` where there are none."""
+        """Smallest distance between neighbouring holes in mm; :data:`USUAL_PITCH` if there are none."""
         return min((min(shown.carrier.pitch) for shown in self.carriers), default=USUAL_PITCH)
 
 
 def find_shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> ShownSetUp:
-    """Return what is visible of a toolkit that holds a workpiece; raises InputError as
+    """Return the visible elements of a toolkit that holds a workpiece; raises InputError as
     :func:`find_shown_beside`.
     """
     if isinstance(fixture.hold, JawHold):
@@ -411,7 +410,7 @@ def find_shown(fixture: Fixture, toolkit: Toolkit, workpiece: Workpiece) -> Show
 
 
 def find_shown_between_jaws(workpiece: Workpiece, fixture: Fixture, toolkit: Toolkit) -> ShownSetUp:
-    """Return what shows of two flat jaws with a workpiece between them."""
+    """Return the visible elements of two flat jaws with a workpiece between them."""
     jaws, hold, part = toolkit.flat_jaws, fixture.hold, bound_placed_part(workpiece, fixture.pose)
     assert jaws is not None and isinstance(hold, JawHold)
     width, opening = jaws.width, hold.opening
@@ -470,9 +469,9 @@ def bound_placed_parts(
 
 
 def find_shown_beside(part: Box, fixture: Fixture, toolkit: Toolkit) -> ShownSetUp:
-    """Return what is visible of a toolkit with pegs that holds a part whose bounding box is ``part``.
+    """Return the visible elements of a toolkit with pegs that holds a part whose bounding box is ``part``.
 
-    Raises InputError where part and pegs are so far apart that too many holes would show.
+    Raises InputError if part and pegs are so far apart that too many holes would be shown.
     """
     travelled = fixture.travel
     carriers = toolkit.plates

@@ -58,7 +58,7 @@ def flip_up_axis(axis: str) -> str:
 
 
 def to_bands(values: Iterable[Any]) -> tuple[Band | None, ...]:
-    """Return bands as pairs (low, high) of floats, None kept where nothing may touch."""
+    """Return bands as pairs (low, high) of floats, with None for segments that must not be touched."""
     return tuple(
         None if value is None else (convert_real(value[0]), convert_real(value[1])) for value in values
     )
@@ -73,7 +73,7 @@ def to_loops(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
 
 
 def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
-    """Return heights as a tuple of floats; raise InputError where one is not finite."""
+    """Return heights as a tuple of floats; raise InputError if one is not finite."""
     numbers = tuple(convert_real(value) for value in values)
     if not all(map(isfinite, numbers)):
         raise InputError("a height of an upper face of the solid is not a length: give it in mm.")
@@ -135,13 +135,13 @@ def interpolate_run(rows: RunRows, share: float) -> Band:
 
 @frozen
 class SolidOutline:
-    """The solid that an outline is of, seen at the height of the pegs.
+    """The solid of an outline at the height of the pegs.
 
     Parameters
     ----------
     axis : direction of the file that points up, one of x, y, z, -x, -y, -z.
-    height : of the part, in mm.
-    peg_height : up to which pegs reach, in mm above the plane on which the part lies.
+    height : height of the part in mm.
+    peg_height : height of the pegs in mm above the plane on which the part lies.
     head_room : height in mm kept free above the pegs.
     least_band : height in mm of the lowest band that may be touched.
     bands : for each segment of the workpiece the heights (z0, z1) in mm at which upright faces cover all of
@@ -241,7 +241,7 @@ class SolidOutline:
 
     @property
     def lies_on_no_face(self) -> bool:
-        """Whether the level faces are known, and none of them is at the plane on which the part lies."""
+        """Whether the level faces are known, and none of them is in the plane on which the part lies."""
         return self.bottom is not None and not self.bottom
 
     @property
@@ -305,14 +305,14 @@ class FileSolid:
 
 @frozen
 class HeightRow:
-    """A range of peg heights over which the outline stays as it is.
+    """A range of peg heights with the same outline.
 
     Parameters
     ----------
-    low, high : in mm; the outline is that of pegs as high as ``high``.
+    low, high : ends of the range in mm; the outline is that of pegs with the height ``high``.
     area : of the outline, in mm².
-    border, touchable : length of its border, and of what may be touched of it, in mm.
-    band : shortest band of what may be touched, in mm; 0 where there is none.
+    border, touchable : length of its border, and of its touchable border, in mm.
+    band : shortest band of a touchable segment, in mm; 0 if there is none.
     slides : whether all touchable faces are flat and parallel, so that the part slides along them.
     """
 
@@ -326,10 +326,9 @@ class HeightRow:
 
 
 def slides_at_every_height(rows: Iterable[HeightRow]) -> bool:
-    """Return whether the part slides along all that pegs touch, at every peg height at which they can touch
-    it.
+    """Return whether the part slides along all touched faces, at every peg height at which pegs can touch it.
 
-    Return False where pegs can touch nothing at any height.
+    Returns False if pegs can touch no face at any height.
     """
     touching = [row for row in rows if row.touchable > 0]
     return bool(touching) and all(row.slides for row in touching)

@@ -1,15 +1,16 @@
 """The raw stock of a part, and the stretches of a program's moves on which a tool meets it.
 
-A program feeds through air as well: down to the work, and into a cut from beside it. Only what cuts counts. A
-tool cuts while its disc, between its tip and the end of its flute, meets the stock: the outer loops of the
-part seen from above, holes filled, grown sideways by an allowance, from the plane on which the part lies up to
-as much above its top. What only touches the stock takes nothing off it.
+A program also feeds through air: down to the work, and sideways into a cut. Only cutting counts. A tool cuts
+while its disc, between its tip and the end of its flute, meets the stock. The stock is the part seen from
+above without holes, grown sideways by an allowance, from the plane on which the part lies up to another
+allowance above its top. A tool that merely touches the stock does not cut.
 
-The disc of radius R meets the grown loops where its middle lies in them, or nearer than d = R + side to their
-border. Distance from an edge is continuous along a move. It is d only where the move meets a parallel of the
-edge, a circle about the centre of a bent edge, or one about either end. Cut there, a move has parts on which
-the distance less d has one sign, that of the part's middle. What all edges leave of a move lies wholly inside
-or wholly outside. Height is linear in the share. So the ends of stretches are exact.
+The disc of radius R meets the grown loops if its middle lies in the loops, or nearer than d = R + side to
+their border. The distance from an edge is continuous along a move. It equals d only where the move meets a
+parallel of the edge, a circle about the centre of a bent edge, or a circle about either end. On each part
+between these points, distance minus d has the sign that it has at the part's middle. The parts that no edge
+covers lie entirely inside or outside the loops. Height is linear in the share. So the ends of stretches are
+exact.
 
 Glossary
 --------
@@ -57,10 +58,10 @@ class Stock(StockQuestion):
 
     Parameters
     ----------
-    side : how far it reaches beyond the part's outline, in mm; 0 where the part comes finished there.
-    top : how far it reaches above the part's top, in mm.
+    side : allowance beyond the part's outline in mm; 0 if the outline is already finished.
+    top : allowance above the part's top in mm.
     shape : ``outline`` for the part's outline, ``block`` for the box around it.
-    height : of the part, in mm; None where nobody knows it, and the stock has no top then.
+    height : height of the part in mm; None if not known: then the stock has no top.
 
     Raises
     ------
@@ -78,7 +79,7 @@ class Stock(StockQuestion):
 
     @property
     def upper(self) -> float:
-        """Height in mm up to which the stock reaches; inf where the part's height is not known."""
+        """Height of the stock's top in mm; inf if the part's height is not known."""
         return inf if self.height is None else self.height + self.top
 
     @classmethod
@@ -239,7 +240,7 @@ class StockBorder:
         """Return (N,) whether points (N, 2), none of them on an edge, lie within a loop.
 
         For each loop the angles that its chords subtend at the point are added, with a whole turn for each
-        arc where the point lies between arc and chord. The sum is ±2 pi for a loop around the point, else 0.
+        arc if the point lies between arc and chord. The sum is ±2 pi for a loop around the point, else 0.
         """
         edges, found = self.edges, [np.zeros(0, np.bool_)]
         side = np.where(edges.is_arc, np.sign(edges.bulge), 0.0)
@@ -449,7 +450,7 @@ def intersect_with_lines(paths: BorderCurves, normal: Floats, level: Floats) -> 
 def compute_shares(paths: BorderCurves, angle: Floats) -> Floats:
     """Return the shares (P, C) at which P arcs reach angles (P, C), in radians about their centres.
 
-    A share above 1 stands for an angle that the arc does not reach.
+    A share above 1 means that the arc does not reach the angle.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
         ahead = np.mod((angle - paths.turn[:, None]) * np.sign(paths.sweep)[:, None], 2 * pi)
@@ -474,8 +475,8 @@ def merge_parts(own: Integers, low: Floats, high: Floats) -> tuple[Integers, Flo
 
 
 def find_gaps(count: int, own: Integers, low: Floats, high: Floats) -> tuple[Integers, Floats, Floats]:
-    """Return the gaps that merged parts (:func:`merge_parts`) leave on ``count`` paths: path indices, first
-    and last shares.
+    """Return the gaps between merged parts (:func:`merge_parts`) on ``count`` paths: path indices, first and
+    last shares.
     """
     every = np.arange(count)
     ends = np.concatenate([every, own]), np.concatenate([np.zeros(count), high])

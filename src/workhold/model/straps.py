@@ -93,19 +93,20 @@ def write_times(times: float) -> float | None:
 def bound_safety(
     force: float, safety: float, need: float | None, bare: float | None, still: float | None
 ) -> float:
-    """Return how many times a load may act on a part that straps hold with a given force.
+    """Return a lower bound of the factor by which a load may grow on a part that straps hold with a given
+    force.
 
-    Without a weight it is exact. Beside a weight, which does not grow with the load, it is never more than
-    the true number: the force needed is convex in the number of times.
+    Without a weight it is exact. With a weight, which does not grow with the load, it is at most the true
+    factor, because the force needed is convex in the factor.
 
     Parameters
     ----------
     force : given force of each strap, in N.
-    safety : number of times for which ``need`` is known.
-    need : force in N of each strap that so many times the load needs, beside the weight; None where no force
-        is enough.
-    bare : force in N that so many times the load needs without the weight; None where no force is enough.
-    still : force in N that the weight alone needs; None where no force is enough.
+    safety : factor for which ``need`` is known.
+    need : force in N of each strap that this multiple of the load needs, with the weight; None if no force is
+        enough.
+    bare : force in N that this multiple of the load needs without the weight; None if no force is enough.
+    still : force in N that the weight alone needs; None if no force is enough.
 
     Examples
     --------
@@ -132,8 +133,8 @@ class StrapHardware:
     count : number of straps that press on the part, 1 to 4.
     tip_radius : radius of a strap's round tip.
     reach : the least and the greatest distance of the tip from the middle of the bolt's hole.
-    max_force : rated force of a strap in N; None where nobody says.
-    height : how high a strap stands above the face that it presses on, with nut and stud; None for six radii of
+    max_force : rated force of a strap in N; None if not known.
+    height : height of a strap, with nut and stud, above the face that it presses on; None for six radii of
         its tip.
 
     Raises
@@ -174,21 +175,21 @@ class StrapHardware:
 
     @property
     def standout(self) -> float:
-        """How high a strap stands above the face that it presses on, in mm."""
+        """Height in mm of a strap above the face that it presses on."""
         return USUAL_STANDOUT * self.tip_radius if self.height is None else self.height
 
 
 @frozen
 class Strap:
-    """Where a strap presses.
+    """The place of a strap.
 
     Parameters
     ----------
     hole : (column, row) of its bolt, numbered as the fixture's pegs are, or in the bolts' own lattice.
     at : (x, y) of its tip in mm, in the plate's frame.
     height : height in mm above the plate of the face on which the tip presses, which is also the height of
-        the heel's block; above the supports where their height is not known.
-    over : (column, row) of the support below its tip; None where the part lies on the plate.
+        the heel's block; above the supports if their height is not known.
+    over : (column, row) of the support below its tip; None if the part lies on the plate.
     """
 
     hole: tuple[int, int]
@@ -220,21 +221,21 @@ class HandPush:
 
 @frozen
 class StrappedHold:
-    """How straps hold a part against locators.
+    """The straps that hold a part against locators.
 
     Parameters
     ----------
     straps : straps in the order of their holes; empty where no places for them are found.
-    push : the push by hand; None where no push presses the part against all locators.
-    places : number of places for a strap, or of holes that may hold a support where straps press over
-        supports; None where straps were not sought.
+    push : the push by hand; None if no push presses the part against all locators.
+    places : number of places for a strap or, if straps press over supports, of holes that may hold a support;
+        None if straps were not searched.
     clamp_needed_each : force in N of each strap that each load needs; None where no force is enough.
-    max_force : rated force of a strap in N; None where nobody says.
-    is_looked_at : whether a push, and with loads the straps, were sought; only the best seats are looked at.
-    supports : (column, row) of the three supports under the part; empty where it lies on the plate.
+    max_force : rated force of a strap in N; None if not known.
+    is_looked_at : whether a push and, with loads, straps were searched; this is done for the best seats only.
+    supports : (column, row) of the three supports under the part; empty if it lies on the plate.
     program_need : force of each strap that the program's tools need; None without their forces.
-    safety_each : how many times the strap force that the query gives holds each load, then the program; 0 where
-        no force holds, inf where none is needed. Empty where no force is given.
+    safety_each : how many times the strap force that the query gives holds each load, then the program; 0
+        where no force holds, inf where none is needed. Empty where no force is given.
     """
 
     straps: tuple[Strap, ...]
@@ -257,9 +258,7 @@ class StrappedHold:
 
     @property
     def clamp_needed(self) -> float | None:
-        """Force in N of each strap that the worst load needs; None without loads, and where no force is
-        enough.
-        """
+        """Force in N of each strap that the worst load needs; None without loads, and if no force is enough."""
         return find_largest_force(self.needs)
 
     @property
@@ -278,17 +277,15 @@ class StrappedHold:
 
     @property
     def safety_reached(self) -> float | None:
-        """How many times the given force holds the loads and the program, the least of ``safety_each``.
+        """Safety of the given force against the loads and the program: the least of ``safety_each``.
 
-        It is inf where no force is needed, and None without a given force, and where no force is enough.
+        It is inf if no force is needed, and None without a given force, and if no force is enough.
         """
         return min(self.safety_each) if self.safety_each and self.clamp_needed is not None else None
 
     @property
     def holds_nothing(self) -> bool:
-        """Whether straps were sought, and either no places were found or some load is not held with any
-        force.
-        """
+        """Whether straps were searched, and either no places were found or no force holds some load."""
         if not self.is_looked_at or self.places is None:
             return False
         return not self.straps or None in self.needs
@@ -324,9 +321,9 @@ class StrappedHold:
         }
 
     def describe_safety(self) -> dict[str, Any]:
-        """Return as plain data how many times the given force holds the loads; {} without a given force.
+        """Return as plain data the safety of the given force against each load; {} without a given force.
 
-        Null stands for any number of times.
+        Null means that the load needs no force.
         """
         if not self.safety_each:
             return {}

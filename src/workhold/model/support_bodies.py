@@ -1,9 +1,9 @@
-"""Supports and the clamp on top as bodies in space, with the fixture that stands on them.
+"""Supports and the clamp on top as bodies in space, with the fixture on them.
 
-The part lies on the supports at z = 0, and the plates lie below by the height of the supports. Each pad has
-a pin down through the hole it stands in. The clamp is drawn as a screw from above, a tip, a spindle and a
-knob over the point where it presses: what holds it nobody says. Where it presses on a face lower than the
-part is high, the part, which is drawn as a prism of its outline, has room for it above that face.
+The part lies on the supports at z = 0, and the plates lie below by the height of the supports. Each pad has a
+pin down through its hole. The clamp is drawn as a screw from above: a tip, a spindle and a knob over the
+point where it presses; its mount is not known. The part is drawn as a prism of its outline. If the clamp
+presses on a face below the part's top, room for it is cut out above that face.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ KNOB_ROOM = 5.0
 
 
 def find_support_height(toolkit: Toolkit) -> float | None:
-    """Return the height in mm of a toolkit's own supports; None where it has none or does not say."""
+    """Return the height in mm of a toolkit's own supports; None if it has none or gives no height."""
     return None if toolkit.supports is None else toolkit.supports.height
 
 
@@ -65,8 +65,8 @@ def size_supported_bodies(
 
     Parameters
     ----------
-    peg_length, peg_height : of the pegs, and how far they stand out of the plates.
-    support_height : of the supports above the plates; if None that of the toolkit's own.
+    peg_length, peg_height : length of the pegs, and their standout above the plates.
+    support_height : height of the supports above the plates; if None that of the toolkit's own.
     thickness : thickness of the part; if None the one for which the supports were computed.
 
     Raises
@@ -139,8 +139,8 @@ def list_bodies_on_supports(
 def cut_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[Slab]:
     """Yield a slab of a part, cut so that a vertical cylinder above the height ``low`` is free, all in mm.
 
-    A cylinder inside the slab leaves a round well. Where it meets the slab's border, nothing is left above
-    ``low``. A slab that it does not reach is yielded as it is.
+    A cylinder inside the slab leaves a round well. If it meets the slab's border, all material above ``low``
+    is removed. A slab that it does not reach is yielded unchanged.
     """
     border = [segment for loop in (slab.outer, *slab.holes) for segment in loop]
     away = min(measure_distance_to_segment(center, segment) for segment in border)
@@ -156,8 +156,8 @@ def cut_room(slab: Slab, center: Point, radius: float, low: float) -> Iterator[S
 def make_pad_bodies(
     supports: Supports, fixture: Fixture, pads: Sequence[SupportPad], sizes: BodySizes
 ) -> Iterator[FixtureBody]:
-    """Yield the supports: each a pin through the plate,
-    and a pad up to the part where that lies above the plates.
+    """Yield the supports: each a pin through the plate, and a pad up to the part if that lies above the
+    plates.
     """
     query, floor = supports.query, sizes.floor
     carriers = {one.carrier.name: one for one in find_shown(fixture, query.toolkit, query.workpiece).carriers}
@@ -178,7 +178,7 @@ def size_clamp_pieces(low: float, highest: float) -> tuple[tuple[float, float], 
     Parameters
     ----------
     low : height at which the tip presses, in mm.
-    highest : height of part and pegs, above which the knob has to stand, in mm.
+    highest : height of part and pegs in mm; the knob must be above it.
     """
     spindle = max(SPINDLE[0], highest + KNOB_ROOM - low - TIP[0])
     return TIP, (spindle, SPINDLE[1]), KNOB

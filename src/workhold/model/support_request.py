@@ -1,10 +1,10 @@
-"""What is asked of supports and a clamp on top, and the loads in space.
+"""Requests for supports and a clamp on top, and loads in space.
 
 Glossary
 --------
 band : the heights at which a peg may press on its face, from z0 to z1; z is up, 0 where the part lies.
 tip : the round end of the clamp that presses on the part from above.
-reach : rings about holes of a clamp in which its tip can stand, in the toolkit's frame.
+reach : rings about a clamp's holes in which its tip can be, in the toolkit's frame.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def make_span(value: Any) -> Span:
 
 
 def to_loops(loops: Iterable[Any]) -> Loops:
-    """Return loops of (x, y, bulge) vertices as (N, 3) arrays; raise InputError for what is not a loop."""
+    """Return loops of (x, y, bulge) vertices as (N, 3) arrays; raise InputError for anything else."""
     return tuple(
         check_vertices(loop, f"face: loop {number}", partial("face: loop {}, side {}".format, number))
         for number, loop in enumerate(loops, 1)
@@ -106,11 +106,11 @@ def to_rings(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, floa
 
 @frozen(field_transformer=name_number_fields)
 class SpatialLoad:
-    """A load as it acts in space; force, axial force and moments act together, their ranges by themselves.
+    """A load in space. Force, axial force and moments act together; each varies in its own range.
 
     Parameters
     ----------
-    points : where it acts, (x, y) in mm in the part's coordinates; empty for moments alone.
+    points : points (x, y) in mm, in the part's coordinates, at which it may act; empty for moments alone.
     force : in the plane, in N, 0 or more.
     directions : of that force, in degrees in the part's frame, as of a planar load.
     heights : (least, greatest) height in mm at which it acts; None is the top of the part.
@@ -187,7 +187,7 @@ class SpatialLoad:
 
 @frozen(field_transformer=name_number_fields)
 class SupportRequest:
-    """Sizes of supports and clamp, and places where they may touch; lengths in mm, in the part's coordinates.
+    """Sizes of supports and clamp, and their allowed places; lengths in mm, in the part's coordinates.
 
     Parameters
     ----------
@@ -199,8 +199,8 @@ class SupportRequest:
     bands : for each peg of the fixture, in order, its band in place of ``band``; None for a peg without one.
     pad_margin : smallest distance from a pad to the border of the face it supports.
     bottom, top : faces that supports and the clamp may touch, as loops of (x, y, bulge), the outer one first.
-        No loops are no face, and None is the outline with its holes.
-    top_heights : for each loop of ``top`` the height of its face in mm; None where all are at the thickness.
+        An empty value means no face, None the outline with its holes.
+    top_heights : for each loop of ``top`` the height of its face in mm; None if all are at the thickness.
     bottom_zones, top_zones : keep-outs from below and from above.
     inside : smallest distance from the clamp to each side of the supports' triangle; the tip's radius if not
         given.
@@ -308,8 +308,8 @@ class SupportRequest:
         ----------
         thickness : in mm; that of the solid if None.
         pad_radius, tip_radius : in mm; the usual ones if None.
-        toolkit : toolkit that holds the part; its own supports and clamp on top are used. Where it has none,
-            the usual pad is made as small as the toolkit's holes need.
+        toolkit : toolkit that holds the part; its own supports and clamp on top are used. If it has none, the
+            usual pad is made small enough for the toolkit's holes.
 
         Raises
         ------
@@ -374,10 +374,10 @@ class SupportRequest:
 
         Parameters
         ----------
-        peg_height : how far pegs reach above the plane on which a prism lies, in mm; over all its height if
-            None.
-        numbered : the segments of the part with the run of heights over each; if None, pegs press on no more
-            than the bands of their faces.
+        peg_height : height of the pegs in mm above the plane on which a prism lies; None for the prism's
+            height.
+        numbered : the segments of the part with the run of heights over each; if None, pegs press only within
+            the bands of their faces.
         """
         whole = (0.0, self.thickness if peg_height is None else min(peg_height, self.thickness))
         if self.band is not None or self.bands is not None or solid is None:
@@ -454,8 +454,8 @@ def find_touched_band(peg: Peg, solid: SolidOutline) -> Span | None:
 
 
 def find_pressed_heights(peg: Peg, fixture: Fixture, numbered: NumberedOutlines) -> Span | None:
-    """Return the heights (low, high) in mm at which a peg can press where it touches its face;
-    None where there are none.
+    """Return the heights (low, high) in mm at which a peg can press where it touches its face; None if there
+    are none.
 
     On a corner they span those of both faces.
     """

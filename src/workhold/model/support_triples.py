@@ -1,9 +1,9 @@
 """Supports of a planar fixture: sets of three with their figures, and the set that is chosen.
 
-Supports may stand in holes before column A or row 1 of a fixture as it was listed, or nearer the opening than
-its pegs. Then all of the set-up stands elsewhere in the same plates: so many columns and rows further on. The
-part, its pegs and its supports keep their places to one another. So a chosen triple is counted anew from the
-plates' first holes, in which all holes have names.
+Supports may be in holes before column A or row 1 of a listed fixture, or nearer the opening than its pegs.
+Then the whole set-up is shifted in the same plates, by some columns and rows. The part, its pegs and its
+supports keep their relative places. So the holes of a chosen triple are renumbered from the plates' first
+holes, so that all have names.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ class ClampFigures:
 
     Parameters
     ----------
-    at : (x, y) where it presses, in mm in the part's coordinates.
-    clamp_needed : force in N above which no support loses contact under any load.
+    at : point (x, y) where it presses, in mm in the part's coordinates.
+    clamp_needed : force in N at which no support loses contact under any load.
     support_force : the largest force on a support at that force, in N; None without loads.
     arm : distance in mm from the nearest side of the supports' triangle: the tipping moment resisted per N.
-    share : smallest share of the clamp force that a support takes.
+    share : smallest share of the clamp force on a support.
     lift : clamp force needed for each N of jaw force when nothing else acts.
-    hangs : whether the material under the point does not reach down to where the part lies, as of a web under
-        a lip.
+    hangs : whether the material under the point does not reach down to the plane on which the part lies, as
+        under a lip.
     """
 
     at: Point
@@ -69,7 +69,7 @@ class SupportPad:
 
     Parameters
     ----------
-    carrier : name of what it stands on.
+    carrier : name of its carrier.
     column, row : hole, numbered as in the planar fixture; it may lie beyond the end of the plate, or be
         negative.
     x, y : in mm in the part's coordinates.
@@ -101,15 +101,15 @@ class Triple:
     Parameters
     ----------
     supports : in order of carrier, column and row.
-    travel : opening of the moving jaw in mm with these supports; None where no lattice moves.
-    marginal : whether a rule is met so narrowly that another computation may leave the set out.
+    travel : opening of the moving jaw in mm with these supports; None if no lattice moves.
+    marginal : whether a rule is satisfied so narrowly that another computation may reject the set.
     standing : distance in mm of the centre of area inside the triangle; positive where the part stands
         unclamped.
     overhang : largest distance in mm of a load's point beyond a side of the triangle; None without such a
         point.
     arm, arm_at : the largest tipping arm in mm, and the clamp's point for it.
-    best : the clamp where it needs the least force.
-    given : the clamp at the point asked for; None where none was asked for or it may not stand there.
+    best : the clamp at the place with the least force.
+    given : the clamp at the requested point; None if none was requested or the clamp may not stand there.
     """
 
     supports: tuple[SupportPad, ...]
@@ -131,9 +131,9 @@ class Triple:
 
     @property
     def clamp(self) -> ClampFigures:
-        """The clamp at the point asked for, if it may stand there; else the clamp that needs the least force.
+        """The clamp at the requested point, if it may stand there; else the clamp that needs the least force.
 
-        Where no clamp needs any force, the latter is at the place with the largest tipping arm.
+        If no force is needed anywhere, the latter is at the place with the largest tipping arm.
         """
         return self.given or self.best
 
@@ -144,14 +144,14 @@ class Supports:
 
     Parameters
     ----------
-    query : part and toolkit, with what else the planar fixture was asked for.
+    query : query of the planar fixture, with part and toolkit.
     fixture : the planar fixture that the supports belong to.
     request : the request that the supports answer.
-    loads : the loads, with their heights written out.
-    jaw_force : force in N on what moves, for which all figures hold.
+    loads : the loads, with all heights filled in.
+    jaw_force : force in N on the moving carrier, for which all figures hold.
     positions : number of holes that may hold a support.
-    count : number of valid triples; None where not all were examined.
-    triples : those listed, the best first.
+    count : number of valid triples; None if not all were examined.
+    triples : the listed triples, the best first.
     stopped : whether the search was stopped; then ``triples`` are the best of those examined.
     """
 
@@ -167,7 +167,7 @@ class Supports:
 
     @property
     def words(self) -> str:
-        """Phrase on how many sets are listed, and under which part."""
+        """Phrase with the number of listed sets, and the part."""
         whole = "" if self.count is None else f" of {self.count:,}"
         sets = f"the best {len(self.triples):,}{whole} sets of three" if self.triples else "no set of three"
         return f"{sets} under {self.query.workpiece.name}"
@@ -186,7 +186,7 @@ class Supports:
         return self.count == len(self.triples)
 
     def find_triple(self, rank: int) -> Triple:
-        """Return the set of three with this rank, from 1; raise InputError where there is none."""
+        """Return the set of three with this rank, from 1; raise InputError if there is none."""
         count = len(self.triples)
         if not 1 <= rank <= count:
             there = f"{count} are listed" if count else "there is no set of three"
@@ -221,15 +221,15 @@ class Supports:
 
 @frozen
 class RecountedSupports:
-    """A fixture and its supports in holes that all have names.
+    """A fixture and its supports, with holes renumbered so that all have names.
 
     Parameters
     ----------
-    fixture : the set-up with renumbered holes; its coordinates in mm still count from the hole that they
-        counted from before.
+    fixture : the set-up with renumbered holes; its coordinates in mm are still measured from the same hole as
+        before.
     supports : the three, in their order; ``x`` and ``y`` stay those in the part's coordinates.
-    columns, rows : how many columns and rows of the first plate the part and pegs stand further on than
-        listed.
+    columns, rows : numbers of columns and rows of the first plate by which part and pegs are moved from the
+        listed set-up.
     """
 
     fixture: Fixture

@@ -75,7 +75,7 @@ def find_stop_stretch(workpiece: Workpiece, jaws: JawPair, hold: JawHold, pose: 
 
 
 def list_far_points(segment: Segment) -> list[tuple[float, float]]:
-    """Return the ends of a segment, and the points of an arc that are farthest left and right."""
+    """Return the ends of a segment; for an arc also its leftmost and rightmost points."""
     points = [segment.start, segment.end]
     if isinstance(segment, Arc):
         (x, y), radius = segment.center, segment.radius

@@ -1,9 +1,9 @@
 """The two ends of the part's contact with a wall: the ends of a hull edge, or of its common stretch with the
 wall.
 
-Where a wall has ends, such as a flat jaw of a vise, it reaches over some x of its own frame. The part touches
-the wall's line at the points K of a hull edge, which may bridge gaps. The common stretch is the convex hull
-of the points of K that lie on the wall. Its ends take up the wall's force, so they are the contacts.
+A wall with ends, such as a flat jaw of a vise, covers a range of x in its own frame. The part touches the
+wall's line at the points K of a hull edge, which may bridge gaps. The common stretch is the convex hull of
+the points of K that lie on the wall. Its ends carry the wall's force, so they are the contacts.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class CommonStretch:
 
     @property
     def length(self) -> Array:
-        """Lengths (N,) in mm; -inf where there is no stretch."""
+        """Lengths (N,) in mm; -inf if there is no stretch."""
         return self.end - self.start
 
 
@@ -125,7 +125,7 @@ class WallEnds:
 def find_wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, position: Array) -> WallEnds:
     """Return the two ends of the contact with a toolkit's wall for N poses.
 
-    Where a wall with ends does not reach the part, the ends are those of the contact with an endless wall.
+    If a wall with ends does not reach the part, the ends are those of the contact with an endless wall.
 
     Parameters
     ----------
@@ -155,5 +155,7 @@ def find_wall_ends(workpiece: Workpiece, toolkit: Toolkit, theta: Array, positio
 
 
 def measure_standouts(part: Box, reach: tuple[float, float]) -> tuple[float, float]:
-    """Return how far a part's box reaches beyond a wall's left and right end, in mm; 0 where it does not."""
+    """Return the distances in mm by which a part's box extends beyond a wall's left and right end; 0 if it
+    does not.
+    """
     return max(reach[0] - part.x0, 0.0), max(part.x1 - reach[1], 0.0)

@@ -61,8 +61,8 @@ def encode_loops(loops: Sequence[NDArray[np.float64]]) -> tuple[bytes, ...]:
 
 
 def check_name(name: Any) -> str:
-    """Return the name of a part, without characters that cannot be encoded;
-    raise InputError for what is not text.
+    """Return the name of a part, without characters that cannot be encoded; raise InputError if it is not
+    text.
     """
     refuse_kind(name, str, "the name of a part", "give text")
     return make_encodable(name)
@@ -106,11 +106,11 @@ class Workpiece:
         the holes, clockwise. A solid that pegs meet in several pieces has an outer loop for each, before all
         holes.
     remarks : changes made to the loops given, one sentence each.
-    departure : how far the outline may be from the one that was drawn, in mm, where curves were read as lines
-        and arcs.
-    solid : how the solid stands and the bands of the segments, for an outline by height; None for a prism.
+    departure : largest distance in mm of the outline from the drawn one, if curves were read as lines and
+        arcs.
+    solid : position of the solid and bands of the segments, for an outline by height; None for a prism.
     outlines : by role, the outlines that carriers with heights of their own meet, see ``model.own_outlines``.
-    finished : the finished part, where this is the raw block around it (``model.raw_block``); else None.
+    finished : the finished part, if this is the raw block around it (``model.raw_block``); else None.
 
     Examples
     --------
@@ -159,7 +159,8 @@ class Workpiece:
         loops : the outer loop first, then any holes; each (N, 3), run in either direction. With a solid,
             there may be several outer loops before the holes.
         labels : for every loop, a name for each of its segments in messages (such as ``LINE 2F``).
-        departure : how far these loops may be from what was drawn, in mm; below ``READING`` it counts as 0.
+        departure : largest distance of these loops from the drawn curves, in mm; below ``READING`` it counts
+            as 0.
         solid : the part's solid, with a band for every segment in the order of these loops; None for a prism.
 
         Raises
@@ -231,10 +232,10 @@ class Workpiece:
         Parameters
         ----------
         name : the user's name of the part.
-        outline : (N, 2) corners in mm, run in either direction; the first may stand at the end again.
+        outline : (N, 2) corners in mm, run in either direction; the first may be repeated at the end.
         holes : corners (N, 2) of each hole.
-        fit : largest distance in mm of chords from the arc that replaces them, where 0.001 mm is too fine;
-            the part's ``departure`` then has the distance reached.
+        fit : largest distance in mm of chords from the arc that replaces them, if 0.001 mm is too fine; the
+            part's ``departure`` then has the actual distance.
 
         Raises
         ------
@@ -315,17 +316,18 @@ class Workpiece:
         return draw_and_save_workpiece(self, path, peg_radius=peg_radius, unit=unit, overwrite=overwrite)
 
     def to_shapely(self, tolerance: float = 0.01) -> shapely.Polygon | shapely.MultiPolygon:
-        """Return the part as a shapely polygon in mm, in its own frame;
-        a multipolygon where it has several pieces.
+        """Return the part as a shapely polygon in mm, in its own frame; a multipolygon if it has several
+        pieces.
 
         Parameters
         ----------
-        tolerance : how far chords may be from the arcs that they replace, in mm; their ends lie on the arcs.
+        tolerance : largest distance in mm of chords from the arcs that they replace; their ends lie on the
+            arcs.
 
         Raises
         ------
         InputError
-            For a tolerance that is not a positive length, and where shapely is not installed.
+            For a tolerance that is not a positive length, and if shapely is not installed.
         """
         from workhold.presenting.data import to_shapely
 
@@ -359,8 +361,8 @@ class Workpiece:
 
     @cached_property
     def numbered(self) -> NumberedOutlines:
-        """Segments and faces of :attr:`every_outline`;
-        the numbers of each outline go on after those of the one before.
+        """Segments and faces of :attr:`every_outline`; the numbers of each outline continue after those of
+        the previous one.
         """
         return NumberedOutlines.from_outlines(self.every_outline)
 
@@ -493,8 +495,8 @@ def check_departure(value: float) -> float:
 
 
 def describe_arc_changes(straightened: int, rounded: int) -> tuple[str, ...]:
-    """Return sentences on how many arcs were replaced by lines and how many were moved onto one circle with a
-    neighbour.
+    """Return sentences with the numbers of arcs that were replaced by lines and that were moved onto one
+    circle with a neighbour.
     """
     remarks = []
     if straightened:

@@ -1,23 +1,23 @@
-"""Whether the numbers that a result gives about itself agree with each other and with what it lists.
+"""Checks that the numbers a result gives about itself agree with each other and with its list.
 
-The identities, for each type apart where a number is given for each type:
+The identities, which hold for each type separately if a number is given for each type:
 
 - counts = fixtures listed; counts <= found; 0 < distinct where 0 < found; distinct <= found <= distinct *
   rotations of the part onto itself.
-- Where more are found than listed, the best were asked for and as many are listed, or a note says that some
-  were not kept. No more are listed than were asked for.
-- No fixture is found of a type that is not asked for.
+- If more are found than listed, the query asks for that number of best ones, or a note says that some were
+  not kept. No more are listed than the query asks for.
+- All fixtures found have a type that the query asks for.
 - candidates = discarded_by_bound + verified + undecided; escalated <= candidates, and escalated > 0 where
   undecided > 0.
-- found <= verified, since every fixture comes from a candidate of its own.
+- found <= verified, since every fixture comes from a different candidate.
 - Every undecided entry is a possible place (``verification.undecided``).
 - A search has crossings_sought <= curve_pairs. A complete one has cells, and contacts_examined <= candidates.
 - The algebra has no cells. Once it is complete candidates <= simultaneous_contacts.
 - Beside a wall cells = hull_edges, candidates = contacts_examined.
 - features >= faces touched.
 - With two clamps and a note that not all was counted, pairs and seats are not given, and found = listed.
-- Otherwise, with two clamps and the best pair of each seat listed, found = seats. Where all are listed,
-  pairs = the sum of the numbers of pairs that the listed fixtures stand for.
+- Otherwise, with two clamps and the best pair of each seat listed, found = seats. Where all are listed, pairs
+  = the sum of the numbers of pairs that the listed fixtures stand for.
 - With two clamps and every pair listed, found = pairs, and seats = the number of seats among the listed
   fixtures. Once the search is complete each seat has as many pairs as are derived.
 - Each seat and pair of directions needs two contacts of locators, or wall and locator, and a clamp. Each pair
@@ -126,8 +126,8 @@ def count_faults(listing: WrittenListing, rotations: int) -> Iterator[str]:
 
 
 def find_seating_count_faults(listing: WrittenListing) -> Iterator[str]:
-    """Yield one sentence where the number of fixtures with a stated seating is not the number that should
-    have one.
+    """Yield one sentence if the number of fixtures with a stated seating is not the number that should have
+    one.
     """
     query, listed = listing.query, len(listing.fixtures)
     # With two clamps there is none to state.
@@ -304,7 +304,7 @@ def expect_reason(listing: WrittenListing, verified: int) -> Wanted:
 
 
 def is_line_of(program: Program | None, line: int) -> bool:
-    """Return whether some move of the program stands in this line of its text; False without a program."""
+    """Return whether some move of the program belongs to this line of its text; False without a program."""
     return program is not None and any(piece.line == line for piece in program.pieces)
 
 
@@ -332,8 +332,8 @@ def may_be_said(note: Note, listing: WrittenListing) -> bool:
 def is_as_seated(note: Seated, listing: WrittenListing) -> bool:
     """Return whether both numbers of a ``Seated`` note are possible.
 
-    They are the number of fixtures whose seating was worked out, and the number of those that keep the
-    seating rules.
+    They are the number of fixtures with a computed seating, and the number of these that satisfy the seating
+    rules.
     """
     listed, found, query = len(listing.fixtures), sum(listing.found.values()), listing.query
     most = min(query.seating or 0, found)
@@ -373,12 +373,12 @@ def find_pair_count_faults(listing: WrittenListing) -> Iterator[str]:
 
 
 def is_uncounted(listing: WrittenListing) -> bool:
-    """Return whether a note says that fixtures that cannot be among the best were left out uncounted."""
+    """Return whether a note says that fixtures which cannot be among the best were not counted."""
     return BestOnly(listing.query.best or 0) in listing.notes
 
 
 def find_seat_faults(listing: WrittenListing, refuted: Collection[int]) -> Iterator[str]:
-    """Yield one sentence where the number of seats, or of clamp pairs at one seat, differs from the derived
+    """Yield one sentence if the number of seats, or of clamp pairs at one seat, differs from the derived
     number.
 
     Yields nothing unless the toolkit has two clamps, every pair is listed and all was counted. ``refuted``

@@ -172,7 +172,7 @@ class LineSide:
     def compute_slacks(self, point: Point, offset: arb) -> tuple[arb, ...]:
         """Return (from the start, from the end): distances in mm along the side to the foot of ``point``.
 
-        A distance is negative where the foot lies beyond that end. ``offset`` is ignored: it matters on arcs
+        A distance is negative if the foot lies beyond that end. ``offset`` is ignored: it matters on arcs
         only.
         """
         along = compute_dot_product(subtract(point, self.start), self.tangent)
@@ -246,11 +246,10 @@ class ArcSide:
         return ways[0] if one < two else ways[1] if two < one else None
 
     def measure_within(self, ray: Point) -> arb:
-        """Return a number whose sign says whether the ray from the centre along the vector ``ray`` meets the
+        """Return a number whose sign tells whether the ray from the centre along the vector ``ray`` meets the
         arc.
 
-        It is positive where the ray meets the arc and negative where it misses the arc. Its size, in mm, has
-        no meaning.
+        It is positive if the ray meets the arc and negative if it misses it. Its size has no meaning.
         """
         return compute_dot_product(self.middle, ray) - compute_norm(ray) * self.half_sweep.cos()
 
@@ -286,7 +285,7 @@ def make_line_side(start: Point, end: Point) -> LineSide:
 
 
 def make_arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
-    """Return the arc from start to end with a bulge that is not 0, convex where the bulge is positive.
+    """Return the arc from start to end with a bulge that is not 0; it is convex for a positive bulge.
 
     With chord (dx, dy) the centre lies (1 - b²)/(4b) chords to the left of the chord's middle, and the radius
     is (1 + b²)/(4|b|) chords (from r = c / (2 sin(half sweep))).
@@ -303,9 +302,7 @@ def make_arc_side(start: Point, end: Point, bulge: float) -> ArcSide:
 
 
 def make_side_at_vertex(vertex: Vertex, following: Vertex) -> Side:
-    """Return the side from one vertex (x, y, bulge) to the following vertex:
-    a line where the bulge is about 0.
-    """
+    """Return the side from one vertex (x, y, bulge) to the following vertex: a line if the bulge is about 0."""
     start, end = make_exact_point(*vertex[:2]), make_exact_point(*following[:2])
     return make_line_side(start, end) if abs(vertex[2]) < STRAIGHT else make_arc_side(start, end, vertex[2])
 
@@ -347,10 +344,10 @@ class BallOutline:
     faces : by face number, the whole face as one side.
     others : by face number, (number, side) of every segment that is not part of the face.
     neighbours : by face number, the segments (before the face's start, after its end).
-    turns : by face number, how far the neighbours (before, after) turn at the joint; see
+    turns : by face number, the turns of the outline at the joints with the neighbours (before, after); see
         :func:`measure_turn_at`.
     own : outlines by role of the carriers that touch the part at heights of their own; under the empty role,
-        the outline of all other carriers. Empty where all carriers touch the same outline
+        the outline of all other carriers. Empty if all carriers touch the same outline
         (``verification.contacts``).
     """
 

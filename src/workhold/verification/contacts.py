@@ -1,16 +1,16 @@
 """The contacts of a fixture in ball arithmetic: equations, frictionless force closure, forces, wrench radius.
 
-The equations (model: condition 1) are in the unknowns theta, x, y and the travels of what moves. A workpiece
-point q lies at R(theta) q + t, t = (x, y). A peg that moves is at its hole's place plus its travel S times
-its way, a unit vector. Of jaws the travel is the separation; of a clamp it is how far its tip is from its
-hole. With u the vector from t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
+The equations (model: condition 1) are in the unknowns theta, x, y and the travels of the moving carriers. A
+workpiece point q lies at R(theta) q + t, t = (x, y). A moving peg is at its hole's place plus its travel S
+times its way, a unit vector. For jaws the travel is the separation; for a clamp it is the distance of its tip
+from its hole. With u the vector from t to the peg's centre, N = R n and C = R c, a peg of radius rho touches
 
 - a line with outward normal n and level l when N · u - l - rho = 0;
 - an arc about c when (|u - C|² - reach²) / 2 = 0, reach = r + rho on a convex and r - rho on a concave arc.
 
 Force closure and forces (model: conditions 4 and 5) follow from the null vector of four wrenches (n, q x n),
-which the signed 3 x 3 minors give. It depends neither on the point that moments are taken about nor on their
-scale, because both change the matrix by invertible row operations only.
+which the signed 3 x 3 minors give. It does not depend on the reference point of moments nor on their scale,
+because both change the matrix by invertible row operations only.
 
 Carriers with heights of their own touch further outlines of the part. The segments of these have numbers
 above those of the first outline; equal outlines share their numbers. So a face's number says which outline
@@ -108,11 +108,11 @@ class BallContact:
     Parameters
     ----------
     hole : centre of the peg's hole in the toolkit's frame, in mm, at travel 0.
-    way : unit vector along which the peg moves as the travel grows; (0, 0) where it stands still.
+    way : unit vector along which the peg moves as the travel grows; (0, 0) for a fixed peg.
     side : the face touched.
-    radius : distance in mm of the peg's centre from the side: the peg radius, or where a flat lies on a line
-        the distance of the flat from the centre.
-    body : for a peg with a flat, the radius in mm to be kept clear of all other sides; None where that is
+    radius : distance in mm of the peg's centre from the side: the peg radius or, for a flat that lies on a
+        line, the distance of the flat from the centre.
+    body : for a peg with a flat, the radius in mm to be kept clear of all other sides; None if that is
         ``radius``.
     travel : index, from 0, of the peg's travel among the travels of a pose.
     """
@@ -309,7 +309,7 @@ def compute_inner_product(a: Sequence[arb], b: Sequence[arb]) -> arb:
 
 
 def invert_matrix(rows: list[list[arb]]) -> list[list[arb]] | None:
-    """Return the inverse of a square matrix; None where it may be singular."""
+    """Return the inverse of a square matrix; None if it may be singular."""
     try:
         inverse: list[list[arb]] = arb_mat(rows).inv().tolist()
     except ZeroDivisionError:

@@ -2,16 +2,16 @@
 
 They are defined in docs/quality.md and, as formulas, in the model ("Quality"). Let A be the matrix of the
 rows (n_x, n_y, q x n, n . w) of a fixture's contacts at q with outward unit normals n. They are in the
-workpiece's frame and about its origin. The vector w is the way of a peg that moves, such as x on the right
-jaw, and 0 of one that stands still.
+workpiece's frame and about its origin. The vector w is the way of a moving peg, such as x on the right jaw,
+and 0 for a fixed peg.
 
-- When peg i stands delta_i too far towards the workpiece, A y = -delta. Here y is the workpiece's movement,
-  its turn and how far what moves gives way.
-- Forces f that balance a load (g_x, g_y, moment) while what moves is not pushed are
-  A^-T (g_x, g_y, moment, 0).
+- If peg i is delta_i too far towards the workpiece, A y = -delta. Here y is the workpiece's movement, its
+  turn, and the distance by which the moving carrier gives way.
+- Forces f that balance a load (g_x, g_y, moment) without a push on the moving carrier are A^-T (g_x, g_y,
+  moment, 0).
 
-Neither the movements of points nor the forces depend on the point that moments are taken about, or on their
-scale. The figures are those of ``statics.quality``, of which nothing is used.
+Neither the movements of points nor the forces depend on the reference point of moments or on their scale. The
+figures are those of ``statics.quality``, but its code is not used.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ def compute_direction(degrees: arb) -> Point:
 
 @frozen(eq=False)
 class FigureMeasure:
-    """What the figures of quality of all fixtures of a result have in common, at one precision.
+    """The data common to the figures of quality of all fixtures of a result, at one precision.
 
     Parameters
     ----------
@@ -134,15 +134,15 @@ class FigureMeasure:
     wrench_length : L in mm.
     diameter : of the part, in mm.
     center : of the part's bounding box.
-    arcs : the convex arcs of the outer loop, each face whole.
+    arcs : the convex arcs of the outer loop, one per face.
     centers : (A, 4) rows (1, x² + y², x, y), one for the centre of each of the A arcs, in mm.
     corners : (C, 4) such rows, one for each of the C joints of the outer loop that may be farthest from some
         point.
     peg, face : tolerances in mm of peg places and of faces.
-    loads : those that the query asks about.
+    loads : loads of the query.
     walk : along the program; None where the program has no forces.
     direction : main direction of the part in degrees (``verification.judging``).
-    jaw_force : in N, None where none was said.
+    jaw_force : jaw force in N, None if none was given.
     has_ends : whether the part lies on a wall that has ends.
     stated_force : the jaw force in N for which bending is stated.
     bending : limits above which a warning counts: stress of a pin in MPa, movement of the part by bent pins
@@ -208,12 +208,12 @@ class FigureMeasure:
     ) -> Mapping[str, arb]:
         """Return the figures of quality of a fixture by key.
 
-        Two cases leave figures out: (a) without loads and program forces, those of loads; (b) where the pose
-        is not known well enough, all but those of the balance's forces.
+        Without loads and program forces, the figures of loads are left out. If the pose is not known well
+        enough, all figures but those of the balance's forces are left out.
 
         Parameters
         ----------
-        beams : one for each contact, see ``verification.pins``; None where it is not known how far pegs bend.
+        beams : one for each contact, see ``verification.pins``; None if the bending of pegs is not known.
         states_bending : whether the file states how far pegs bend.
         """
         out = {"closure_margin": balance.margin, "clamp_amplification": find_largest(balance.forces)}
@@ -293,8 +293,9 @@ class FigureMeasure:
     def compute_end_distance(self, contact: BallContact, face: int, center: Point) -> arb:
         """Return the distance in mm from a peg's centre to the nearer end of its path along a face.
 
-        The path ends where the face ends, or where the peg would enter another side. A whole circle has no
-        end: there it is half the path's circumference. ``center`` is the peg's centre in the part's frame.
+        The path ends at the end of the face, or where the peg would enter another side. A whole circle has no
+        end: the distance is then half the path's circumference. ``center`` is the peg's centre in the part's
+        frame.
         """
         side, radius = contact.side, contact.radius
         ends = measure_edge_distances(side, radius, self.find_barriers(contact, face), center, (False, False))
@@ -335,9 +336,10 @@ class FigureMeasure:
         """Return the least jaw force in N, 0 or more, at which no load makes a peg of a screw vise lose
         contact.
 
-        Let the peg forces f0 balance a load while the jaw keeps its force, let h be the peg forces per unit
-        of jaw force, and let P project on the closing forces of the jaw, or of both clamps. A locked jaw
-        leaves f0 - P f0, so the result is the largest of ((P f0)_i - f0_i) / h_i over all pegs i and loads.
+        Let the peg forces f0 balance a load with a jaw that keeps its force, let h be the peg forces per unit
+        of jaw force, and let P be the projection onto the closing forces of the jaw, or of both clamps. With
+        a locked jaw the peg forces are f0 - P f0, so the result is the largest of ((P f0)_i - f0_i) / h_i
+        over all pegs i and loads.
         """
         most, rows = arb(0), balance.responses
         pairs = list(zip(map(balance.project_on_closing, rows), rows, strict=True))

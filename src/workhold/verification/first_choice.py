@@ -1,9 +1,10 @@
-"""The usual order, derived anew: effective location errors, the least of all, and the steps above it.
+"""The usual order, derived independently: effective location errors, the least of them, and the steps above
+it.
 
-The rules are those of docs/quality.md, "Which comes first". What a file says may be off in its last digit, and
-a contact, an angle or an edge of the part may lie at the edge of a rule. Then either side is right, so that
-factors, errors and steps are ranges here. Nothing of what orders fixtures in a search is used, and places are
-worked out from the vertices of the outline.
+The rules are those of docs/quality.md, "Which comes first". The last digit of a number in a file may be
+wrong, and a contact, an angle or an edge of the part may lie at the limit of a rule. Then both sides are
+right, so factors, errors and steps are ranges here. The search's code for ordering fixtures is not used, and
+places are computed from the vertices of the outline.
 """
 
 from __future__ import annotations
@@ -47,9 +48,8 @@ class EffectiveJudge:
 
     Parameters
     ----------
-    query : what is asked.
-    least : least effective error in mm among all fixtures found, as the file states it; None where it does
-        not.
+    query : the query.
+    least : least effective error in mm among all fixtures found, as the file states it; None if it does not.
     """
 
     query: Query
@@ -58,8 +58,8 @@ class EffectiveJudge:
     def compute_effective_error(self, fixture: Fixture) -> tuple[int, int]:
         """Return (least, greatest) possible effective error in whole billionths of a mm.
 
-        It is the written location error times the factor of each rule that applies. Where the fixture states
-        no location error, it may be anything up to ``MOST_ERROR``.
+        It is the written location error times the factor of each rule that applies. If the fixture states no
+        location error, it may have any value up to ``MOST_ERROR``.
         """
         written = fixture.quality.get("location_error")
         if written is None:
@@ -100,7 +100,7 @@ class EffectiveJudge:
     def holes(self) -> frozenset[int]:
         """The numbers of the faces of the part's holes.
 
-        Empty where jaws open outward, or where no other faces may be touched.
+        Empty if jaws clamp outward, or if no other faces may be touched.
         """
         part = self.query.workpiece.numbered
         outside = {face.number for face in part.faces if face.number not in part.inside}
@@ -146,8 +146,8 @@ class EffectiveJudge:
         """Return whether the part reaches more than ``spare`` mm beyond the plates along an axis (0 for x, 1
         for y).
 
-        True only if the part does so at every shift by whole holes that keeps the pegs on their plates. False
-        where a plate is endless along the axis.
+        True only if this holds for every shift by whole holes that keeps the pegs on their plates. False if a
+        plate is endless along the axis.
         """
         toolkit, plates = self.query.toolkit, self.query.toolkit.plates
         counts = [(plate.columns, plate.rows)[axis] for plate in plates]

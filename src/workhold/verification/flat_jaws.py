@@ -1,10 +1,10 @@
-"""What flat jaws hold, derived anew: poses, what each jaw touches, the rules, and the forces that loads ask
-for.
+"""Fixtures between flat jaws, derived independently: poses, contacts of each jaw, the rules, and the forces
+that loads need.
 
-A fixture is given by a pose, parallels and a stop. What follows from these is derived from the loops of the part and
-compared with what is written: lengths to 1e-6 mm, forces to a thousandth. The forces come from another method
-(``verification.jaw_forces``), the resultants of pressures from second moments, and whether hulls meet from the hull of
-all differences.
+A fixture is given by a pose, parallels and a stop. All further data are derived from the loops of the part
+and compared with the file: lengths to 1e-6 mm, forces to a thousandth. The methods differ from the search's:
+forces come from ``verification.jaw_forces``, the resultants of pressures from second moments, and hulls are
+tested for contact by the hull of all differences.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class JawContact:
 
 @frozen(eq=False)
 class JawJudge:
-    """Derives the fixtures of a query whose toolkit has flat jaws."""
+    """Judge of the fixtures of a query whose toolkit has flat jaws; it derives them independently."""
 
     query: Query
     seen: dict[tuple[int, float, str | None], int] = field(factory=dict, init=False)
@@ -176,7 +176,8 @@ class JawJudge:
     def list_obstacles(
         self, hold: JawHold, segments: Sequence[Segment]
     ) -> Iterator[tuple[str, tuple[float, float, float, float], float]]:
-        """Yield (name, x0, y0, x1, y1 of its box in mm, height of its top in mm) of what tools keep clear of.
+        """Yield (name, x0, y0, x1, y1 of its box in mm, height of its top in mm) of the bodies that tools
+        keep clear of.
 
         These are both jaws, a work stop, two parallels and the bed. ``segments`` are the part's outline in the
         jaws' frame.
@@ -204,10 +205,10 @@ class JawJudge:
     def find_program_faults(
         self, fixture: Fixture, hold: JawHold, segments: Sequence[Segment]
     ) -> Iterator[str]:
-        """Yield one sentence where a tool of the program comes too near to the sides of a jaw, the work stop,
-        a parallel or the bed, or runs into it.
+        """Yield one sentence if a tool of the program comes too near to the sides of a jaw, the work stop, a
+        parallel or the bed, or collides with it.
 
-        Stops after the first fault. Also yields one where parallels stand where they cannot.
+        Stops after the first fault. Also yields one for parallels at an impossible place.
         """
         thick = [
             box[3] - box[1] for name, box, _ in self.list_obstacles(hold, segments) if name == "a parallel"
@@ -256,7 +257,7 @@ class JawJudge:
     def has_hull_edge(self, segments: Sequence[Segment]) -> bool:
         """Return whether the convex hull of an outline has a straight edge.
 
-        Arcs are sampled, so an edge counts only where it is longer than any chord between samples.
+        Arcs are sampled, so an edge counts only if it is longer than every chord between samples.
         """
         points = np.array([point for one in segments for point in sample_segment(one)])
         hull = np.array(find_hull_corners([(float(x), float(y)) for x, y in points.round(9)]))
@@ -274,7 +275,7 @@ class JawJudge:
         """Return the stretches and points of an outline that lie on a jaw face at y = ``level`` mm.
 
         ``bands`` gives the heights (bottom, top) of each segment, None for no upright face; ``face_of`` its
-        face number. Corners come last, and only where no stretch contains them; such a contact has no face.
+        face number. Corners come last, and only if no stretch contains them; such a contact has no face.
         """
         out = list[JawContact]()
         ends = list[tuple[float, int]]()
@@ -308,8 +309,8 @@ class JawJudge:
     def find_shift_faults(
         self, hold: JawHold, gripped: Sequence[Sequence[JawContact]], ends: tuple[float, float]
     ) -> Iterator[str]:
-        """Yield one sentence where the part's place along the jaws is not the one
-        that its stop, or centring, asks for.
+        """Yield one sentence if the part's place along the jaws is not the one that its stop, or centring,
+        requires.
 
         ``gripped`` are the contacts of the fixed and the moving jaw, ``ends`` the part's least and greatest x
         in mm.
@@ -411,10 +412,10 @@ class JawJudge:
     def list_stop_points(
         self, hold: JawHold, segments: Sequence[Segment]
     ) -> tuple[list[tuple[float, float, float]], float]:
-        """Return (points, sign): where the work stop may push, and 1.0 where it pushes along +x, -1.0 along
-        -x.
+        """Return (points, sign): the points at which the work stop may push, and its direction: 1.0 for +x,
+        -1.0 for -x.
 
-        The points are the part's extreme ones, at height 0 and at the height of the jaws' top, in mm in the
+        The points are the part's extreme points, at height 0 and at the height of the jaws' top, in mm in the
         jaws' frame; [] without a stop.
         """
         if hold.stop is None:
@@ -430,14 +431,14 @@ class JawJudge:
     def find_force_faults(
         self, number: int, load: Load, need: float | None, fixture: Fixture, held: HeldBetweenJaws
     ) -> Iterator[str]:
-        """Yield one sentence where the written jaw force for a load differs from the derived one.
+        """Yield one sentence if the written jaw force for a load differs from the derived one.
 
-        Yields nothing where the method does not converge.
+        Yields nothing if the method does not converge.
 
         Parameters
         ----------
-        number : of the load, from 1, for the message.
-        need : the written force in N; None where the file says that no force suffices.
+        number : number of the load, from 1, for the message.
+        need : the written force in N; None if the file says that no force suffices.
         """
         low, high = load.directions
         turns = (
@@ -529,7 +530,7 @@ def compute_segment_box(segment: Segment) -> tuple[float, float, float, float]:
 def find_grip(lies: Sequence[JawContact], top: float, least: float) -> list[JawContact]:
     """Return the contacts cut to heights 0 to ``top`` mm that are then at least ``least`` mm high.
 
-    Two cases: (a) if any of them is a stretch, the stretches only; (b) otherwise the points.
+    If any of them is a stretch, only the stretches are returned, otherwise the points.
     """
     cut = [JawContact(one.low, one.high, max(one.bottom, 0.0), min(one.top, top), one.face) for one in lies]
     high = [one for one in cut if one.top - one.bottom >= least - 1e-9]
@@ -597,10 +598,11 @@ def measure_distance_to_origin(p: tuple[float, float], q: tuple[float, float]) -
 
 
 def find_stop_middle(segments: Sequence[Segment], way: float) -> float:
-    """Return y in mm at which a work stop touches an outline: the middle of its longest upright line farthest
-    out, of two as long the lower one, else the lowest point there.
+    """Return the y in mm at which a work stop touches an outline.
 
-    ``way`` is 1.0 for a stop at the left, -1.0 at the right.
+    It is the middle of the longest upright line farthest out, the lower one of two equally long ones. Without
+    such a line it is the lowest of the points farthest out. ``way`` is 1.0 for a stop at the left, -1.0 at
+    the right.
     """
     reached = [(way * x, x, y) for one in segments for x, y in find_extreme_points(one)]
     least = min(one[0] for one in reached)

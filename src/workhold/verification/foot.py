@@ -28,10 +28,10 @@ GAUSS = ((0.5 - sqrt(3) / 6, 0.5), (0.5 + sqrt(3) / 6, 0.5))
 
 
 class Foot:
-    """The foot of a part: the area, bounded by loops of segments with material on their left, on which it
-    stands.
+    """The foot of a part: the area on which it rests, bounded by loops of segments with material on their
+    left.
 
-    All is in the plate's frame, in mm.
+    All data are in the plate's frame, in mm.
 
     Attributes
     ----------

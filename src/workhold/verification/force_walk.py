@@ -56,8 +56,8 @@ class ForceWalk:
 
     Parameters
     ----------
-    walk : where the moves go.
-    forces : on all moves, and the stretches.
+    walk : paths of the moves.
+    forces : forces on all moves, and the stretches.
     move : (R,) for each stretch, the number of the move that it belongs to.
     first : (B,) for each block, the index of its first stretch.
     center, reach : (B, 2) and (B,) centre and radius of a circle around each block, in mm.
@@ -110,11 +110,11 @@ class ForceWalk:
         if larger.
 
         (g_x, g_y) is the force of a tool in N, and m its moment about the part's origin in N mm. The result
-        is NaN where a, b or c is not finite.
+        is NaN if a, b or c is not finite.
 
         Parameters
         ----------
-        known : a value of 0 or more (0 stands for a tool that does nothing); only larger ones are sought.
+        known : a value of 0 or more (0 is that of an idle tool); only larger ones are sought.
         line, tool : the program line and tool number whose moves are searched; ``line`` None searches all
             moves.
         """
@@ -208,7 +208,9 @@ class ForceWalk:
 
 @lru_cache(maxsize=8)
 def make_force_walk(program: Program) -> ForceWalk | None:
-    """Return the walk along a program with its forces; None where the program has no forces. Cached."""
+    """Return the walk along a program with its forces; None if the program has no forces. The result is
+    cached.
+    """
     return None if program.forces is None else ForceWalk.from_program(program, program.forces)
 
 
@@ -270,7 +272,7 @@ def judge_program_forces(
 
 
 def find_entry_fault(said: Any) -> str:
-    """Return what is wrong with the form of a program-force entry; "" if nothing is.
+    """Return a description of the fault in the form of a program-force entry; "" if there is none.
 
     The words follow "the forces of its program" in a message.
     """
@@ -294,12 +296,12 @@ def judge_place(
     worst: arb,
     spare: arb,
 ) -> Iterator[Finding]:
-    """Yield a finding where the line, tool and contact that the file names do not reach the worst value.
+    """Yield a finding if the line, tool and contact named in the file do not reach the worst value.
 
     Parameters
     ----------
     said : the file's entry, with "line", "tool" and "element" (the contact's name).
-    names : of the contacts.
+    names : names of the contacts.
     functions : for each contact the coefficients (a, b, c) of its force per unit of load.
     own : for each contact the value without any load.
     worst : the worst value as derived.

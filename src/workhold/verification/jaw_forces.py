@@ -1,11 +1,11 @@
-"""The jaw force that a load asks for between two flat jaws, by another method than the search's.
+"""The jaw force that a load needs between two flat jaws, by another method than the search's.
 
-A jaw's pressures are sums of a few extreme pressures with unit force, and its friction is a sum of what each
-of them lets its cells bear. So the wrenches of a jaw with unit force are a convex set. A motion of the part
-(a twist) finds the point of this set that does most work on it. The least force is found by such points
-alone: a linear program in six equations, to which a point is added for the dual prices of the last solution,
-until none helps (column generation). It is solved by the revised simplex method with bases of six columns.
-Nothing of the search's program is used.
+A jaw's pressures are sums of a few extreme pressures with unit force, and its largest friction is the sum of
+the friction that each of these allows in the cells. So the wrenches of a jaw with unit force are a convex
+set. A motion of the part (a twist) finds the point of this set that does most work on it. Such points are
+enough to find the least force, by a linear program in six equations: for the dual prices of the last solution
+a point is added, until none improves the solution (column generation). It is solved by the revised simplex
+method with bases of six columns. The search's code is not used.
 
 Reference: G. B. Dantzig, P. Wolfe, *Decomposition principle for linear programs*, Operations Research 8
 (1960).
@@ -211,8 +211,8 @@ class HeldBetweenJaws:
 
     @side.default
     def make_small_side(self) -> Array:
-        """Return a small right-hand side (6,) with no two equal entries, which keeps
-        simplex steps from being degenerate.
+        """Return a small right-hand side (6,) with no two equal entries, which prevents degenerate simplex
+        steps.
         """
         return MOVED * np.array([0.61803399, 0.41421356, 0.73205081, 0.23606798, 0.64575131, 0.31662479])
 
@@ -230,9 +230,9 @@ class HeldBetweenJaws:
         """Return the part held between two patches, the fixed one at y = 0 and the moving one at y =
         ``opening`` mm.
 
-        ``friction`` is the coefficient of friction. ``stop`` holds the points where a work stop pushes, along
-        +x (``stop_way`` 1) or -x (-1). ``parallels`` are the places y in mm at which parallels bear the part; None
-        for one at each jaw.
+        ``friction`` is the coefficient of friction. ``stop`` has the points at which a work stop pushes,
+        along +x (``stop_way`` 1) or -x (-1). ``parallels`` are the places y in mm of the parallels under the
+        part; None for one at each jaw.
         """
         feet = [
             (end, y, 0.0)

@@ -154,8 +154,8 @@ class PressingPath:
     def find_hardest_force(self, held: HeldBetweenJaws, starts: list[Array]) -> float | None:
         """Return the largest jaw force in N found by ascents, one from each of the dual prices ``starts``.
 
-        An ascent finds the dearest load at given prices, then goes on with that load's own prices. Returns
-        None where no jaw force holds some load.
+        An ascent alternates: it finds the dearest load at given prices, then takes that load's own prices.
+        Returns None if no jaw force holds some load.
         """
         worst, known = 0.0, set[bytes]()
         for prices in starts:
@@ -208,18 +208,19 @@ def find_program_force_faults(
     frame: tuple[Array, Array] = (np.zeros(3), np.zeros(6)),
     force_name: str = "jaw force",
 ) -> Iterator[str]:
-    """Yield one sentence, without full stop, where the jaw force that a file states for its program is wrong.
+    """Yield one sentence, without full stop, if the jaw force that a file states for its program is wrong.
 
-    Yields nothing more where the method does not converge.
+    Yields nothing more if the method does not converge.
 
     Parameters
     ----------
-    need : the statement of the file; None where there is none.
+    need : the statement of the file; None if there is none.
     held : the part between the jaws.
-    height : of the part, in mm.
+    height : height of the part, in mm.
     safety : factor on the loads.
-    frame : the point (3,) that moments are taken about, and a wrench (6,) that acts besides the tools.
-    force_name : what messages call the force.
+    frame : the point (3,) about which moments are taken, and a wrench (6,) that acts in addition to the
+        tools.
+    force_name : name of the force in messages.
     """
     path = PressingPath.from_program(program, fixture, height, safety, *frame)
     if (need is None) != (not len(path.move)):

@@ -1,15 +1,14 @@
 """Warnings and penalties of a fixture, and whether fixtures are listed in the right order.
 
-Both are rules of docs/quality.md. Warnings and penalties are counted in balls. The file's numbers may be off,
-so a figure may lie on either side of the number that decides; then the ball holds both counts.
+Both are rules of docs/quality.md. Warnings and penalties are counted in balls. The file's numbers are
+rounded, so a figure may lie on either side of its limit; then the ball contains both counts.
 
 The order ("Which comes first"): fixtures that are unfit for a workshop come last. In the usual order a
 warning, steps of the effective error and the angle come before figures (``verification.first_choice``). Every
-figure but the last counts to two significant digits, the last to nine decimals. Equal fixtures stand in the
-order of types, holes, orientations and faces. Fixtures whose seating is known come first, and warnings of the
-seating count as those of quality do. A figure is written rounded, and that rounding may carry it over the
-edge between two counts, so a range around each figure is counted. The order of ``listing.ranking`` is not
-used.
+figure but the last counts to two significant digits, the last to nine decimals. Equal fixtures are in the
+order of types, holes, orientations and faces. Fixtures with a known seating come first, and warnings of the
+seating count like those of quality. The rounding of a written figure may change its count, so a range around
+each figure is used. The code of ``listing.ranking`` is not used.
 """
 
 from __future__ import annotations
@@ -76,9 +75,9 @@ def find_main_direction(faces: Sequence[Side]) -> arb:
     """Return the main direction in degrees: that of the straight faces with most length parallel or square to
     them.
 
-    Among about equal candidates the longest face counts, then the first. It is 0 (the drawing's x) where
-    there is no straight face, or where different directions have about as much length. Candidates are
-    compared in doubles.
+    Among about equal candidates the longest face decides, then the first. It is 0 (the drawing's x) if there
+    is no straight face, or if different directions have about the same length. Candidates are compared in
+    doubles.
     """
     lines = [side for side in faces if isinstance(side, LineSide)]
     if not lines:
@@ -118,7 +117,7 @@ def compute_tilt(pose: BallPose, direction: arb) -> arb:
 
 
 def count_if_above(value: arb, limit: arb | float, part: arb) -> tuple[int, int]:
-    """Return (least, greatest) possible count, each 0 or 1, of a value that counts where it is above a limit.
+    """Return (least, greatest) possible count, each 0 or 1, of a value that counts if it is above a limit.
 
     ``part`` is the relative error of the value; ``HAIR`` is its absolute error.
     """
@@ -142,8 +141,8 @@ def count_warnings(
     bending: tuple[float, float] = (PIN_STRESS_LIMIT, PIN_MOVEMENT_LIMIT),
     states_bending: bool = True,
 ) -> arb:
-    """Return the number of warnings of a fixture, as a ball that holds every possible number where rounding
-    decides.
+    """Return the number of warnings of a fixture, as a ball that contains every number that is possible
+    within rounding.
 
     Warnings are: each contact near an edge, a weak closure, a strong peg, and a large location error. At a
     known jaw force there are three more: a peg that loses contact, a large pin stress, a large movement of
@@ -154,7 +153,7 @@ def count_warnings(
     figures : figures of quality by key.
     edges : distances in mm of contacts from edges.
     off : sum of the tolerances in mm.
-    jaw_force : in N; None where none is given.
+    jaw_force : in N; None if none is given.
     part : relative error of the file's figures.
     bending : limits of pin stress in MPa and of that movement in mm.
     states_bending : whether the file states how far pegs bend. An older file does not, and its number of
@@ -220,11 +219,10 @@ class OrderJudge:
         return [(warned, warned), self.effective.count_error_steps(fixture), (low, high)]
 
     def find_least_error_fault(self, fixtures: Sequence[Fixture], is_whole: bool) -> str:
-        """Return a sentence where the written least effective error is missing or wrong; "" where it is
-        right.
+        """Return a sentence if the written least effective error is missing or wrong; "" if it is right.
 
-        ``is_whole`` says that all fixtures found are listed. Otherwise an unlisted fixture may have the least
-        error, so only too large a written value is a fault.
+        ``is_whole`` tells that all fixtures found are listed. Otherwise an unlisted fixture may have the
+        least error, so only too large a written value is a fault.
         """
         if not fixtures:
             return ""
@@ -266,12 +264,11 @@ def find_order_faults(
 ) -> Iterator[str]:
     """Yield one sentence for the first fixture that is out of order.
 
-    Yields nothing where a figure that decides the order is not written, or a fixture stands on unknown
-    carriers.
+    Yields nothing if a figure that decides the order is not written, or if a fixture has unknown carriers.
 
     Parameters
     ----------
-    least : least effective error in mm among all fixtures found, as written; None where it is not written.
+    least : least effective error in mm among all fixtures found, as written; None if it is not written.
     is_whole : whether all fixtures found are listed.
     is_chosen : whether somebody chose the listed fixtures, so that the best may be missing.
     ahead : how many of the first fixtures stand in another order, that of a figure of bending.
@@ -379,7 +376,7 @@ def list_ranked_ranges(figures: Mapping[str, float], ranking: Sequence[str]) -> 
 
 
 def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
-    """Return whether, of two equally good fixtures, ``one`` certainly stands before ``other``."""
+    """Return whether ``one`` certainly comes before ``other``, given that both fixtures are equally good."""
     (holes, angle, faces), (others, angle_of_other, faces_of_other) = (
         make_sort_key(fixture, hardware) for fixture in (one, other)
     )
@@ -391,10 +388,10 @@ def is_earlier(one: Fixture, other: Fixture, hardware: ToolkitRules) -> bool:
 def make_sort_key(fixture: Fixture, hardware: ToolkitRules) -> Rank:
     """Return the sort key of equally good fixtures: (type, directions and holes; angle in radians; faces).
 
-    Two cases: (a) without a wall and with one moving carrier, the fixture is first turned so that its clamp
-    pushes along -x. Then columns count from the first peg of each carrier, and rows from the lowest row of
-    all. If both jaws are alike and hold as many pegs, a fixture whose angle is half a turn or more is turned
-    back by half a turn. (b) All other fixtures are sorted by the columns and rows of their holes as written.
+    Without a wall and with one moving carrier, the fixture is first turned so that its clamp pushes along -x.
+    Then columns are counted from the first peg of each carrier, and rows from the lowest row of all. If both
+    jaws are equal and have equally many pegs, a fixture whose angle is half a turn or more is turned back by
+    half a turn. All other fixtures are sorted by the written columns and rows of their holes.
     """
     ways = [list(WAYS).index(name) for name in list_directions(fixture)]
     numbers = [hardware.toolkit.types.index(fixture.type), *ways]
@@ -450,10 +447,10 @@ def rank_unfit(fixture: Fixture, off: float) -> Range:
 
 
 def is_better(one: Sequence[Range], other: Sequence[Range]) -> bool | None:
-    """Return whether the sort key ``one`` is before ``other``; None where they are equal.
+    """Return whether the sort key ``one`` is before ``other``; None if they are equal.
 
-    The first entry at which the ranges are not the same single number decides. True means that there the
-    range of ``one`` is certainly less; False that it is not.
+    The first entry decides at which the ranges are not one and the same number. True means that the range of
+    ``one`` is certainly less there; False that it is not.
     """
     for (low, high), (least, most) in zip(one, other, strict=True):
         if high < least:

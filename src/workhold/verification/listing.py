@@ -1,9 +1,9 @@
-"""What a result claims of its fixtures and their seating, number for number as its file writes it.
+"""The claims of a result about its fixtures and their seating, number for number as in its file.
 
-Reading a result to use it drops what can be worked out again, such as the pegs' x and y. Where the file does
-not give something it takes the usual value. A verification has to see every number, and what is missing. Head
-and lines are read by ``files.result.parts``, the one reader of result files. Fixtures stand in a file as JSON
-objects (``verification.reading``) or in columns. Nothing of the search is used.
+Reading a result for use drops numbers that can be recomputed, such as the pegs' x and y, and replaces missing
+data by the usual values. A verification has to see every number, and which are missing. Head and lines are
+read by ``files.result.parts``, the one reader of result files. Fixtures stand in a file as JSON objects
+(``verification.reading``) or in columns. The search's code is not used.
 """
 
 from __future__ import annotations
@@ -220,11 +220,11 @@ class FixturesInColumns(Sequence[Fixture]):
 
 @frozen(eq=False)
 class WrittenListing:
-    """A result as it is written.
+    """A result as written in its file.
 
     Parameters
     ----------
-    query : what was asked.
+    query : the query.
     fixtures : as listed.
     counts, found, distinct : numbers of fixtures by type, as written.
     complete, notes, statistics, proof, pairs, seats, least_effective_error, bent_by : see ``Result``.
@@ -253,7 +253,7 @@ class WrittenListing:
 
     @property
     def is_chosen(self) -> bool:
-        """Whether a note says that somebody chose the listed fixtures, so that nothing is said of the
+        """Whether a note says that somebody chose the listed fixtures. Then no claim is made about the
         others.
         """
         return ChosenOnly(sum(self.found.values()), len(self.fixtures)) in self.notes
@@ -388,7 +388,7 @@ def read_head_and_fixtures(
 
 
 def read_any_fixtures(items: Iterable[Any], path: Path) -> list[Fixture] | list[AnyHoldPart]:
-    """Return the fixtures with pegs, or of flat jaws or straps, as the first item says."""
+    """Return the fixtures with pegs, of flat jaws or of straps; the first item decides which."""
     iterator = iter(items)
     first = list(islice(iterator, 1))
     together = chain(first, iterator)
@@ -492,7 +492,7 @@ def find_missing_keys(head: Head) -> list[str]:
 def read_counts_by_type(
     counts: Mapping[str, int] | None, key: str, types: Sequence[str], usual: Mapping[str, int] | None = None
 ) -> Mapping[str, int]:
-    """Return the numbers of fixtures by type; ``usual`` where ``counts`` is None.
+    """Return the numbers of fixtures by type; ``usual`` if ``counts`` is None.
 
     ``key`` names the numbers in messages.
 

@@ -67,7 +67,7 @@ def make_beams(fixture: Fixture, query: Query) -> list[PegBeam | None] | None:
 
 
 def find_stated_force(query: Query) -> arb:
-    """Return the jaw force in N for which bending is stated."""
+    """Return the jaw force in N to which the stated bending belongs."""
     return arb(STATED_FORCE if query.jaw_force is None else query.jaw_force)
 
 

@@ -1,4 +1,4 @@
-"""Where a fixture lies: the one place proven near what its file writes, and whether restrictions are kept.
+"""The pose of a fixture, proven to be unique near the one in its file, and the check of restrictions.
 
 Theorem (Krawczyk 1969): let f be continuously differentiable on a box X with midpoint m, J(X) an enclosure of
 its Jacobian on X and Y any matrix. If
@@ -8,7 +8,7 @@ its Jacobian on X and Y any matrix. If
 lies in the interior of X, then f has exactly one zero in X, and it lies in K.
 
 Restrictions are faces to avoid, keep-out zones, angles, blocked holes and bodies. They are not claims of
-existence, so the pose as it is written is enough. One is broken when it is missed by more than
+existence, so the written pose is enough. A restriction is broken when it is missed by more than
 ``tolerances.AGREEMENT``.
 
 References
@@ -65,7 +65,7 @@ MOST_STEPS = 12
 
 
 def enclose_zero(system: System, start: Sequence[float]) -> list[arb] | None:
-    """Return proven balls for the one zero of ``system`` near ``start``; None where the precision does not
+    """Return proven balls for the only zero of ``system`` near ``start``; None if the precision does not
     prove it.
 
     Newton's method on midpoints finds the zero, and Krawczyk's theorem proves it. The box around it has a
@@ -143,8 +143,8 @@ def prove_pose(
 
 
 def find_broken_restriction(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return a sentence, without full stop, on the first restriction that a
-    fixture breaks; "" where it keeps all.
+    """Return a sentence, without full stop, on the first restriction that a fixture breaks; "" if it
+    satisfies all.
     """
     restrictions = query.restrictions
     avoided = find_avoided_faces(query)
@@ -187,9 +187,7 @@ def find_untouched_face(fixture: Fixture, query: Query, hardware: ToolkitRules) 
 
 
 def find_imprecision(fixture: Fixture, query: Query) -> str:
-    """Return a sentence where the fixture's written location error is above the query's limit; "" where it is
-    not.
-    """
+    """Return a sentence if the fixture's written location error is above the query's limit, else ""."""
     most, error = query.max_location_error, fixture.quality.get("location_error", inf)
     if most is None or error <= most + AGREEMENT:
         return ""
@@ -211,8 +209,7 @@ def find_faces_without_band(workpiece: Workpiece) -> set[int]:
 def find_avoided_faces(query: Query) -> set[int]:
     """Return the numbers of the faces that no peg may touch, in all outlines of the part.
 
-    A face of a further outline is avoided where it comes from the same face of the solid as an avoided
-    segment.
+    A face of a further outline is avoided if it comes from the same face of the solid as an avoided segment.
     """
     avoid, every = set(query.restrictions.avoid), query.workpiece.numbered
     if query.workpiece.outlines and every.over:
@@ -224,8 +221,7 @@ def find_avoided_faces(query: Query) -> set[int]:
 def find_restriction_broken_at_wall(
     fixture: Fixture, query: Query, hardware: ToolkitRules, avoided: set[int]
 ) -> str:
-    """Return a sentence where an avoided face lies on a wall, or a wall stands in a keep-out zone; "" where
-    neither does.
+    """Return a sentence if an avoided face lies on a wall, or a wall is in a keep-out zone; else "".
 
     ``avoided`` are the numbers of the avoided faces.
     """
@@ -284,7 +280,7 @@ def compute_turn_around(sides: Sequence[Side], point: Point) -> arb:
     """Return the angle in radians by which a closed chain of sides winds around a point not on it: 2 pi
     inside, 0 outside.
 
-    An arc winds around the point by as much as its chord, or by one whole turn more or less where the point
+    An arc winds around the point by the same angle as its chord, or by a whole turn more or less if the point
     lies between arc and chord.
     """
     total = arb(0)

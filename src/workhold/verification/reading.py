@@ -1,10 +1,11 @@
-"""Fixtures of a result file from their JSON objects, number for number as it writes them.
+"""Fixtures of a result file, read from their JSON objects number for number.
 
-Every function below ``make_fixtures`` raises an ``UnusableError`` that says what is missing or of a wrong kind.
+All functions below ``make_fixtures`` raise an ``UnusableError`` that says which entry is missing or of a
+wrong kind.
 
 Glossary
 --------
-role : what a peg is: a "locator" in a hole of a plate, a "clamp" bolted to it, a "jaw" peg; pegs without one
+role : kind of peg: a "locator" in a hole of a plate, a "clamp" bolted to it, a "jaw" peg; pegs without a role
     name their jaw.
 """
 

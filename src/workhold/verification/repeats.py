@@ -1,21 +1,21 @@
-"""Fixtures of a list whose pegs stand in the same pattern: listed twice, or missing among the seats of each
+"""Fixtures of a list whose pegs form the same pattern: listed twice, or missing among the seats of each
 other.
 
 Two fixtures are the same (model: "When two fixtures are the same") if the workpiece has the same place among
-the same pattern of holes. Lattice steps, names of pegs and the half turn that leaves the toolkit as it is
-make no difference. Nor do the numbers of faces: the pose says what is touched.
+the same pattern of holes. Lattice steps, names of pegs and a half turn that maps the toolkit onto itself make
+no difference. Nor do the numbers of faces, because the pose determines the contacts.
 
 Which rotations carry a workpiece onto itself is derived from the marks of its faces (middle, ends and radius)
 alone. They keep the mean of the faces' middles. A rotation of order n carries the faces that are not centred
 on this point in cycles of n, so n divides their number. Each such divisor is tried, the largest first. A
-drawing symmetric to within ``SAME`` counts as symmetric; for one that misses this by about as much, nothing
-can be said.
+drawing symmetric to within ``SAME`` counts as symmetric. If it misses the symmetry by only slightly more, the
+question is left open.
 
 Glossary
 --------
 pattern : the holes of a fixture in a form that is equal for equal fixtures, with the place of the workpiece.
-stance : how the pegs of a fixture stand to each other. Fixtures of one stance are on the same pegs, and each
-    is among the seats of the others.
+stance : the relative places of the pegs of a fixture. Fixtures of one stance use the same pegs, and each is
+    among the seats of the others.
 """
 
 from __future__ import annotations
@@ -63,9 +63,9 @@ class PartRotations:
 
     Parameters
     ----------
-    order : the largest possible number of them, with the identity; 1 for concentric circles, which any turn
-        keeps.
-    center : the point in mm that they keep in its place.
+    order : the largest possible number of rotations, with the identity; 1 for concentric circles, which every
+        turn keeps.
+    center : the fixed point of the rotations, in mm.
     is_certain : whether ``order`` is certainly their number.
     """
 
@@ -141,8 +141,8 @@ class KnownFixtures:
     ----------
     hardware : the rules of their toolkit.
     rotations : angles in radians of the rotations of the workpiece onto itself, the identity left out.
-    center : the point in mm that these rotations keep.
-    sets : by type, the number of fixtures when those that a rotation carries into each other count once.
+    center : the fixed point of these rotations, in mm.
+    sets : by type, the number of fixtures, where fixtures that a rotation carries into each other count once.
     known : by pattern, the (index, place) of each fixture added.
     """
 
@@ -191,8 +191,8 @@ class KnownFixtures:
 def list_patterns(fixture: Fixture, hardware: ToolkitRules) -> Iterator[tuple[Key, Place]]:
     """Yield the (pattern, place) pairs of a fixture; fixtures that have a pair in common are the same.
 
-    Yields two pairs where half a turn of the toolkit gives the same pattern, and none where the pegs are not
-    those of a fixture.
+    Yields two pairs if half a turn of the toolkit gives the same pattern, and none if the pegs are not those
+    of a fixture.
     """
     there = {peg.carrier for peg in fixture.pegs}
     clamps = [find_direction(peg) for peg in fixture.pegs if find_direction(peg)]
@@ -211,7 +211,7 @@ def make_pattern(fixture: Fixture, hardware: ToolkitRules, sign: int) -> tuple[K
 
     The half turn swaps two jaws. Columns count from the first peg of each carrier, rows from the lowest peg;
     beside a fixed wall the pattern also holds the lowest row. Clamps are given by direction and line; the
-    line is left out where one listed pair stands for all pairs of its seat.
+    line is left out if one listed pair represents all pairs of its seat.
     """
     groups = [[peg for peg in fixture.pegs if peg.carrier == one.name] for one in hardware.lattices][::sign]
     lowest = min(sign * peg.row for group in groups for peg in group)
@@ -297,15 +297,16 @@ def find_pattern_faults(fixtures: Sequence[Fixture], query: Query) -> Iterator[s
 
 @frozen
 class PegStance:
-    """How the pegs of a fixture stand to each other.
+    """The relative places of the pegs of a fixture.
 
     Parameters
     ----------
     key : equal for fixtures whose pegs differ only by a shift and by the travel of the moving ones.
-    anchor : in mm, the first fixed peg; where only a wall is fixed, the wall's point below the first peg.
+    anchor : place in mm of the first fixed peg; if only a wall is fixed, of the wall's point below the first
+        peg.
     apart : distance in mm from the anchor to the first moving peg, along the direction in which the travel
         grows.
-    met : the same distance for each fixed peg that stands in the way of a clamp's tip.
+    met : the same distance for each fixed peg in the path of a clamp's tip.
     """
 
     key: tuple[Any, ...]
@@ -315,7 +316,7 @@ class PegStance:
 
 
 def describe_stance(fixture: Fixture, toolkit: Toolkit) -> PegStance:
-    """Return how the placed pegs of a fixture stand to each other; some carrier of the toolkit must move."""
+    """Return the relative places of the placed pegs of a fixture; some carrier of the toolkit must move."""
     by_place = sorted(fixture.placed, key=lambda peg: (peg.x, peg.y))
     still = [peg for peg in by_place if toolkit.find_carrier(peg.carrier).travel is None]
     moved = [peg for peg in by_place if peg not in still]

@@ -1,19 +1,20 @@
 """Three locators that alone fix the pose, and two clamps that press the part on them, in ball arithmetic.
 
 Let w_i = (n_i, q_i x n_i) be the wrenches of the locators, and W = [w_1 w_2 w_3]. Per unit of force on the
-face of a clamp with the wrench w the locators take up a = -W^-1 w. Per unit of the clamp's own force they
-take up b = a / p. Here p is its push, the share of the force on the face along its direction. With forces f1,
-f2 of two clamps the locators carry b1 f1 + b2 f2. Apart from det W none of this depends on the scale of
-moments, or on the point that they are taken about.
+face of a clamp with the wrench w, the locators' forces are a = -W^-1 w. Per unit of the clamp's own force
+they are b = a / p. Here p is its push, the component of the force on the face along its direction. With
+forces f1, f2 of two clamps the locators' forces are b1 f1 + b2 f2. Apart from det W none of this depends on
+the scale of moments, or on their reference point.
 
 Glossary
 --------
-taken : a, what the locators take up of a unit on a clamp's face.
-reactions : b, their forces per unit of a clamp's own.
+taken : a, the locators' forces per unit of force on a clamp's face.
+reactions : b, the locators' forces per unit of a clamp's own force.
 ratio : the open interval of f2 / f1 in which all three locators are pressed.
-freedom : how far apart the ends of that interval are as angles, in degrees.
+freedom : width of that interval in degrees, its ends taken as angles.
 working ratio : its middle as an angle.
-closure margin : the largest least entry of null vectors of all five wrenches that sum to 1.
+closure margin : the least entry of a null vector of all five wrenches with sum 1, maximized over these
+    vectors.
 """
 
 from __future__ import annotations
@@ -129,12 +130,12 @@ class LocatorWrenches:
 
 @frozen(eq=False)
 class ClampPush:
-    """What the locators take up of a clamp's force.
+    """The reaction of the locators to a clamp's force.
 
     Parameters
     ----------
     taken : the forces of the three locators per unit of force on the clamp's face.
-    push : the clamp's own force that goes with a unit of force on its face.
+    push : the clamp's own force per unit of force on its face.
     """
 
     taken: tuple[arb, arb, arb]
@@ -166,7 +167,7 @@ class ClampForceRatio:
     Parameters
     ----------
     low : its lower end.
-    high : its upper end, None where there is none.
+    high : its upper end, None if there is none.
     """
 
     low: arb
@@ -179,9 +180,7 @@ class ClampForceRatio:
 
     @property
     def freedom(self) -> arb:
-        """The width in degrees of the interval, its ends taken as angles; negative where the interval is
-        empty.
-        """
+        """The width in degrees of the interval, its ends taken as angles; negative if the interval is empty."""
         low, high = self.angles
         return (high - low) * 180 / arb.pi()
 
@@ -197,7 +196,7 @@ def find_ratio(one: ClampPush, other: ClampPush) -> ClampForceRatio | None:
     """Return the interval of f2/f1, the second clamp's force over the first's, in which all locators are
     pressed.
 
-    It may be empty (negative ``freedom``). Returns None where it is uncertain whether a reaction counts as 0.
+    It may be empty (negative ``freedom``). Returns None if it is uncertain whether a reaction counts as 0.
     """
     low, high = arb(0), None
     for first, second in zip(one.reactions, other.reactions, strict=True):
@@ -223,10 +222,10 @@ def round_tiny_reaction_to_zero(reaction: arb) -> arb | None:
 
 
 def compute_closure_margin(one: ClampPush, other: ClampPush) -> arb:
-    """Return the closure margin: over all null vectors of the five wrenches with sum 1, the largest least
-    entry.
+    """Return the closure margin: the least entry of a null vector of the five wrenches with sum 1, maximized
+    over these vectors.
 
-    It is 0 where the wrenches do not close. With a_i the locator forces ``taken`` of each clamp, the null
+    It is 0 if the wrenches do not close. With a_i the locator forces ``taken`` of each clamp, the null
     vectors are (1 - s) (a_1, 1, 0) + s (a_2, 0, 1), scaled to sum 1. Before scaling every entry is linear in
     s, 0 <= s <= 1, so the least entry is greatest where two entries are equal. Pairs of entries whose
     difference may be constant are skipped, because another pair then decides.
@@ -257,8 +256,8 @@ class SeatBalance:
     points, normals : the pegs' centres in mm and the outward unit normals, in the workpiece's frame.
     seat : the locators; the ends of a wall's contact count as two.
     pushes : both clamps.
-    known_ratio : the interval of the clamps' force ratio; None where it is uncertain whether a reaction
-        counts as 0.
+    known_ratio : the interval of the clamps' force ratio; None if it is uncertain whether a reaction counts
+        as 0.
     """
 
     points: Sequence[Point]
@@ -316,9 +315,7 @@ class SeatBalance:
             )
 
     def judge_closure(self) -> Iterator[Finding]:
-        """Yield a finding where no ratio of the clamps' forces presses all locators, or where it is uncertain
-        whether any does.
-        """
+        """Yield a finding if no ratio of the clamps' forces presses all locators, or if that is uncertain."""
         if self.known_ratio is None:
             yield Finding(False, "a locator's force is exactly at the edge of what counts as none")
             return
@@ -361,7 +358,7 @@ class SeatBalance:
 
     @cached_property
     def inverse(self) -> list[list[arb]] | None:
-        """The inverse (3, 3) of the matrix with rows (n, q x n), one for each locator; None where it may be
+        """The inverse (3, 3) of the matrix with rows (n, q x n), one for each locator; None if it may be
         singular.
         """
         return invert_matrix([list(wrench) for wrench in self.seat.wrenches])

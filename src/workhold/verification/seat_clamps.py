@@ -1,8 +1,8 @@
 """All clamps that may push at a seat, and the pairs that hold the part there, in closed form and in balls.
 
 A clamp's tip moves along a row or column of holes. Every such line meets the contact feature of each face in
-a point or two, of which those count where the clamp pushes. So the clamps of a seat are found by going
-through lines, faces and points, and nothing is sought. What is in doubt is carried along as such.
+at most two points; only points at which the clamp pushes on the face count. So enumerating lines, faces and
+points gives all clamps of a seat, without a search. Doubtful clamps are kept and marked as such.
 """
 
 from __future__ import annotations
@@ -99,13 +99,13 @@ class SeatClamp:
 
     Parameters
     ----------
-    direction : in which it pushes, such as "-x".
+    direction : direction in which it pushes, such as "-x".
     line : number of the row or column along which it moves.
     face : number of the face that it pushes on.
     tip : centre of its tip on the plate, in mm.
-    push : how the locators react to it.
-    holes : where it may be bolted.
-    sure : whether it certainly keeps all rules of its own.
+    push : reaction of the locators to it.
+    holes : holes in which it may be bolted.
+    sure : whether it certainly satisfies all rules about itself.
     """
 
     direction: str
@@ -119,8 +119,8 @@ class SeatClamp:
 
 @frozen(eq=False)
 class SeatPair:
-    """Two clamps that hold the part: freedom in degrees, closure margin, and whether they certainly hold
-    it.
+    """Two clamps that hold the part: freedom in degrees, closure margin, and whether it is certain that they
+    hold it.
     """
 
     freedom: arb
@@ -130,14 +130,14 @@ class SeatPair:
 
 @frozen(eq=False)
 class SeatOnPlate:
-    """A seat as it stands on the plate.
+    """A seat on the plate.
 
     Parameters
     ----------
-    query : what is asked.
+    query : the query.
     hardware : the rules of its toolkit.
-    outline : what clamps touch of the workpiece.
-    pegs : those in holes that stand still: three, or one beside a wall.
+    outline : the outline of the workpiece that clamps touch.
+    pegs : the fixed pegs in holes: three, or one beside a wall.
     locators : their contacts by name.
     pose : the proven pose; its first travel is 0.
     seat : wrenches of the locators, and of the ends of a wall's contact.
@@ -281,8 +281,8 @@ class SeatOnPlate:
                 yield clamp
 
     def make_clamp(self, contact: BallContact, face: int, line: int, direction: str) -> SeatClamp | None:
-        """Return the clamp whose tip is at a contact; None where it certainly breaks a rule or there is no
-        hole for it.
+        """Return the clamp whose tip is at a contact; None if it certainly breaks a rule or has no possible
+        hole.
         """
         margin = self.query.contact_margin
         touches = decide_verdict(judge_touching("a clamp", contact, face, self.pose, self.outline, margin))
@@ -314,7 +314,7 @@ class SeatOnPlate:
     def is_clear_of_program(self, tip: BallContact, hole: BallContact) -> bool | None:
         """Return whether the program's tools keep clear of a clamp body that reaches from its tip to a hole.
 
-        True where the query has no program to check; None where it is uncertain.
+        True if the query has no program to check; None if it is uncertain.
         """
         if self.query.program_to_clear is None:
             return True

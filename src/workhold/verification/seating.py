@@ -3,17 +3,17 @@
 For each seat (a pose in which the part can come to rest on the pegs) the file gives the pose, the difference
 of travel and the contacts. The contacts are derived anew from the outline: each must touch to ``AGREEMENT``
 (in ball arithmetic), and no peg may be in the part. Forces h >= 0 along the normals must balance on the part,
-while those of the pegs that move add up to one along their way. So a stated seat or pass that is not a seat or
-pass is refuted. A file does not show whether a seat is missing.
+and the forces of the moving pegs must sum to one along their way. So a stated seat or pass that is none is
+refuted. A missing seat cannot be detected from a file.
 
-The stop is where the moving carrier comes to rest without the part. Doubles are exact enough to test whether
-pegs are clear of the part, and whether the part covers the same place.
+The stop is the travel at which the moving carrier comes to rest without the part. Doubles are exact enough to
+test whether pegs are clear of the part, and whether the part covers the same place.
 
 Glossary
 --------
-local : a place in the part's own frame, as drawn, also where the part is turned over (x to -x).
-wrench : force on the part along x and y, moment about its centre divided by its arm, and share of the pegs
-    that move, along their way.
+local : said of a place in the part's own frame, as drawn, even if the part is turned over (x to -x).
+wrench : force on the part along x and y, moment about its centre divided by its arm, and share of the moving
+    pegs, along their way.
 cage : the poses from which the part still settles in its seat.
 pass : the pose at which the part first gets out of the cage as the jaws open.
 placing : how far from its seat the part may be put in.
@@ -65,7 +65,7 @@ Array = NDArray[np.float64]
 
 @frozen
 class PartPlacement:
-    """Where a part lies.
+    """The position of a part.
 
     Parameters
     ----------
@@ -408,7 +408,7 @@ class SeatingJudge:
 
 @define(slots=False)
 class StatedSeating:
-    """A fixture and what is claimed of its seating."""
+    """A fixture and the claims about its seating."""
 
     judge: SeatingJudge
     fixture: Fixture
@@ -564,8 +564,8 @@ class StatedSeating:
             yield "stop is not where what moves is stopped without the part"
 
     def counts_as_wrong(self, place: int, seat: Mapping[str, Any]) -> bool:
-        """Return whether the seat with index ``place`` counts as wrong: there the part does not cover its
-        place in the fixture.
+        """Return whether the seat with index ``place`` is wrong: the part does not cover the same area there
+        as in the fixture.
 
         Seats beyond the opening that the query asks about, or beyond ``seating.most``, do not count.
         """
@@ -580,7 +580,8 @@ class StatedSeating:
         """Yield one clause for each fault of the stated pass, cage and placing.
 
         Cage: the poses from which the part still settles in its seat. Pass: the pose at which the part first
-        gets out of the cage as the jaws open. Placing: how far from its seat the part may be put in.
+        gets out of the cage as the jaws open. Placing: the distance from its seat within which the part may
+        be put in.
         """
         fields = self.fields
         opening, top, cage, placing = (fields[key] for key in ("capture_opening", "pass", "cage", "placing"))
@@ -656,7 +657,7 @@ class StatedSeating:
         return peg.x + by * self.way[0], peg.y + by * self.way[1]
 
     def find_freedom_faults(self, place: PartPlacement, apart: float) -> Iterator[str]:
-        """Yield a verb phrase where a peg overlaps the placed part, or the part enters a wall."""
+        """Yield a verb phrase if a peg overlaps the placed part, or the part enters a wall."""
         numbers = [number for number in range(len(self.is_moving_peg)) if number not in self.on_wall]
         pegs = np.array([self.find_peg_center(number, apart) for number in numbers])
         carriers = self.judge.hardware.carriers

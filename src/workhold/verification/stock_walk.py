@@ -1,11 +1,11 @@
-"""Whether a program's forces act on just those stretches of its moves on which its tools meet the stock.
+"""Check that a program's forces act exactly on those stretches of its moves where its tools meet the stock.
 
-A file states the stretches. Along each the tool's disc must meet the stock all the way, and beside them
-nowhere. Moves are cut into pieces, and for each piece bounds of the distance from the stock's border are
-computed. A piece lies within its sagitta of its chord. Its distance from a straight edge of the border is at
-most that of the chord's ends and at least that of the chord. Its distance from an arc of the border is that
-of the piece's middle, plus or minus half the piece's length. Pieces for which the bounds decide nothing are
-halved, until all that is undecided is within ``OFF`` of touching.
+A file states the stretches. The tool's disc must meet the stock all along each of them, and nowhere else.
+Moves are cut into pieces, and for each piece bounds of the distance from the stock's border are computed. A
+piece lies within its sagitta of its chord. Its distance from a straight edge of the border is at most that of
+the chord's ends and at least that of the chord. Its distance from an arc of the border is that of the piece's
+middle, plus or minus half the piece's length. Pieces that the bounds do not decide are halved, until all
+undecided pieces are within ``OFF`` of touching.
 """
 
 from __future__ import annotations
@@ -158,10 +158,10 @@ class StockGround:
 
 
 def find_stock_faults(query: Query) -> Iterator[str]:
-    """Yield one sentence for the first move whose stretches with forces do not
-    agree with where its tool meets the stock.
+    """Yield one sentence for the first move whose stretches with forces disagree with the places where its
+    tool meets the stock.
 
-    Yields nothing where the file does not say what the part is cut from.
+    Yields nothing if the file does not give the stock.
     """
     program = query.program
     if program is None or program.forces is None or program.stock is None:
@@ -188,7 +188,7 @@ def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, 
     """Yield (move, first share, last share, meets) for the ranges of the moves ``acts`` that are to be
     checked.
 
-    ``meets`` is True where the file says that the tool meets the stock. It is False for the other ranges in
+    ``meets`` is True if the tool meets the stock according to the file. It is False for the other ranges in
     which the tool's height would allow that.
     """
     forces, stock, moves = program.forces, program.stock, program.moves
@@ -219,11 +219,11 @@ def list_acting_ranges(program: Program, acts: IntArray) -> Iterator[tuple[int, 
 def find_wrong_piece(
     walk: ToolWalk, ground: StockGround, move: IntArray, first: Array, last: Array, within: Mask
 ) -> int:
-    """Return the number of a move that contradicts ``within``; -1 where none does.
+    """Return the number of a move that contradicts ``within``; -1 if none does.
 
-    Each of the N ranges runs from share ``first`` to share ``last`` of ``move``. ``within`` (N,) says whether
-    the tool should meet the stock all along the range, or nowhere in it. Ranges too short to halve count as
-    right, ranges still undecided after ``MOST_HALVINGS`` halvings as wrong.
+    Each of the N ranges runs from share ``first`` to share ``last`` of ``move``. ``within`` (N,) tells
+    whether the tool should meet the stock all along the range or nowhere in it. Ranges too short to halve
+    count as right, ranges still undecided after ``MOST_HALVINGS`` halvings as wrong.
     """
     program = walk.program
     stock, moves = program.stock, program.moves

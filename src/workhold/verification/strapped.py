@@ -71,7 +71,7 @@ KERN_SLACK = 1e-6
 
 @frozen(eq=False)
 class StrapJudge:
-    """Judge of the fixtures of a query whose toolkit has straps: derives them anew."""
+    """Judge of the fixtures of a query whose toolkit has straps; it derives them independently."""
 
     query: Query
     seen: dict[tuple[object, ...], int] = field(factory=dict, init=False)
@@ -227,7 +227,7 @@ class StrapJudge:
                 )
 
     def list_strap_elements(self, fixture: Fixture, hold: StrappedHold) -> Iterator[HoldingElement]:
-        """Yield what straps and supports take up, in the part's frame.
+        """Yield the space of straps and supports, in the part's frame.
 
         For each strap they are the bar, upward from the face under its tip, and the bolt with its heel; for
         each support a disc below the part.
@@ -252,8 +252,8 @@ class StrapJudge:
     def find_push_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
         """Yield the faults of the push by hand.
 
-        It must be at the outline, near enough to square to it, and press the part against all three locators,
-        with the written shares. Yields nothing where no push is written.
+        It must act at the outline, nearly square to it, and press the part against all three locators, with
+        the written shares. Yields nothing if no push is written.
         """
         push = hold.push
         if push is None:
@@ -282,7 +282,7 @@ class StrapJudge:
             yield "the push by hand presses locators otherwise than is written"
 
     def find_strap_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Yield the faults of the straps: of their places, of how they press the part down, and of their
+        """Yield the faults of the straps: of their places, of their pressure on the part, and of their
         written forces.
         """
         if not hold.straps:
@@ -316,8 +316,8 @@ class StrapJudge:
         yield from self.find_force_faults(fixture, hold, foot)
 
     def find_support_faults(self, fixture: Fixture, hold: StrappedHold) -> Iterator[str]:
-        """Yield the faults of the three supports: where they stand, and whether each strap's tip is over one
-        of them.
+        """Yield the faults of the three supports: of their places, and for each strap's tip that is not over
+        one of them.
         """
         plate, holes = self.query.toolkit.plates[0], hold.supports
         if len(set(holes)) != SUPPORTS or len(holes) != SUPPORTS:
@@ -553,14 +553,14 @@ class StrapJudge:
 
     @property
     def raised(self) -> float:
-        """How far supports carry the part above the plate, in mm; 0 without them, and where it is not given."""
+        """Height of the supports above the plate, in mm; 0 without them, and if it is not given."""
         if not self.straps.is_over_supports:
             return 0.0
         return (self.query.toolkit.supports or SupportPads()).height or 0.0
 
     def make_jaw_below(self, hold: StrappedHold, foot: Foot, centre: Array) -> PressingJaw:
-        """Return what presses upward below the part: the plate on the foot, or the three supports, each at a
-        point.
+        """Return the surface that presses upward below the part: the plate on the foot, or the three
+        supports, each at a point.
         """
         if not self.straps.is_over_supports:
             return foot.make_pressing_jaw(find_friction_coefficient(self.query.friction, "plate"), centre)
@@ -621,9 +621,7 @@ class StrapJudge:
 
 
 def classify_hold(hold: StrappedHold) -> int:
-    """Return the class by which seats are sorted: 0 held, 1 not looked at, 2 not held, 3 unfit for a
-    workshop.
-    """
+    """Return the class by which seats are sorted: 0 held, 1 not examined, 2 not held, 3 unfit for a workshop."""
     if hold.is_unfit:
         return 3
     if not hold.is_looked_at:
@@ -717,7 +715,7 @@ def is_inside(point: tuple[float, float], loops: Sequence[Sequence[Segment]]) ->
 
 
 def get_running_sign(segment: Segment) -> float:
-    """Return 1 where a segment's parameter grows from its start to its end, -1 where it falls."""
+    """Return 1 if a segment's parameter grows from its start to its end, -1 if it falls."""
     return segment.sign if isinstance(segment, Arc) else 1.0
 
 

@@ -1,16 +1,16 @@
-"""Whether a list of supports is complete: all triples of holes are tried again, and all places of the clamp
-bounded.
+"""Check that a list of supports is complete: all triples of holes are tried again, and all places of the
+clamp are bounded.
 
-How far a point is inside a triangle changes by at most 1 mm for each mm that the point moves, and so does the
-room of the tip. So the lesser of both at the middle of a square cell bounds it over the whole cell. Cells are
-divided until some cell has a place for the clamp, or no cell can have one. How large a disc fits on a face is
+If a point moves by 1 mm, its distance inside a triangle changes by at most 1 mm, and so does the room of the
+tip. So the smaller of both at the middle of a square cell bounds it over the whole cell. Cells are divided
+until some cell has a place for the clamp, or no cell can have one. How large a disc fits on a face is
 computed from the face's segments.
 
 Glossary
 --------
 room : of a hole or a place, the slack in mm of its tightest rule; negative where it breaks a rule.
-sure : of a hole or a triple, that it keeps its rules by more than rounding.
-possible : of a hole or a triple, that it breaks no rule by more than rounding.
+sure : said of a hole or a triple that satisfies its rules by more than rounding.
+possible : said of a hole or a triple that breaks no rule by more than rounding.
 """
 
 from __future__ import annotations
@@ -57,13 +57,13 @@ PROBE = 1e-4
 
 @frozen(eq=False)
 class SupportPlaces:
-    """Rules on where supports and the tip of their clamp may stand.
+    """Rules on the places of supports and of the tip of their clamp.
 
     Parameters
     ----------
     query : part and toolkit.
     fixture : the planar fixture.
-    request : what is asked of supports and clamp.
+    request : request for supports and clamp.
     """
 
     query: Query
@@ -88,9 +88,7 @@ class SupportPlaces:
         return float(x), float(y)
 
     def compute_pad_room(self, hole: Hole) -> float:
-        """Return by how much in mm a pad in a hole keeps its tightest rule; negative where the pad breaks a
-        rule.
-        """
+        """Return the slack in mm of the tightest rule for a pad in a hole; negative if the pad breaks a rule."""
         asked, point = self.request, self.find_hole_place(hole)
         loops = self.query.workpiece.loops if asked.bottom is None else asked.bottom
         room = measure_room_on(loops, [zone.loop for zone in asked.bottom_zones], point)
@@ -122,8 +120,8 @@ class SupportPlaces:
         ]
 
     def compute_tip_room(self, point: tuple[float, float]) -> float:
-        """Return by how much in mm the tip at a point of the part's frame keeps its tightest rule; negative
-        where it breaks one.
+        """Return the slack in mm of the tightest rule for the tip at a point of the part's frame; negative if
+        it breaks a rule.
         """
         asked, room = self.request, -inf
         for level in self.top_levels:
@@ -146,10 +144,11 @@ class SupportPlaces:
         return room
 
     def classify_hanging_at(self, point: tuple[float, float], slack: float = 0.0) -> int:
-        """Return how far the tip at a point hangs over air: 0 not at all, 1 at its rim only, 2 at its middle.
+        """Return the class of overhang of the tip at a point: 0 not over air, 1 over air at its rim only, 2
+        over air at its middle.
 
         Air nearer than the tip's radius to the middle counts as at the rim; ``slack`` mm are added to that
-        distance. Returns 0 where the point is on no upper face.
+        distance. Returns 0 if the point is on no upper face.
         """
         for level in self.top_levels:
             if any(
@@ -164,7 +163,7 @@ class SupportPlaces:
         """Return (fits, opening): whether pegs and supports in these holes fit on their plates, and the
         opening in mm.
 
-        The opening is None where nothing moves, or where no opening avoids the blocked holes.
+        The opening is None if no carrier moves, or if no opening avoids the blocked holes.
         """
         toolkit, plates = self.toolkit, self.toolkit.plates
         taken: dict[str, list[tuple[int, int]]] = {plate.name: [] for plate in plates}
@@ -274,8 +273,8 @@ class ClampCells:
     slack: dict[tuple[int, int, int], float] = field(factory=dict, init=False)
 
     def has_place(self, triangle: Array) -> bool | None:
-        """Return whether there is a place inside a triangle (3, 2) where the clamp's tip keeps all rules by
-        more than rounding.
+        """Return whether there is a place inside a triangle (3, 2) where the clamp's tip satisfies all rules
+        by more than rounding.
 
         Returns None where ``MOST_CELLS`` cells do not decide it.
         """
@@ -442,7 +441,7 @@ def count_turns_about(segments: Loop, point: tuple[float, float]) -> int:
 def measure_room_on(loops: Sequence[Array], zones: Sequence[Array], point: tuple[float, float]) -> float:
     """Return the radius in mm of the largest disc about a point that lies on a face and outside all zones.
 
-    ``loops`` are those of the face. Negative where the point is off the face.
+    ``loops`` are those of the face. Negative if the point is off the face.
     """
     faces = sort_faces_by_size([split_borders(loop) for loop in loops])
     room = max((min(side * measure_reach(one, point) for one, side in face) for face in faces), default=-inf)
@@ -460,9 +459,9 @@ def sort_faces_by_size(loops: Sequence[Loop]) -> list[list[tuple[Loop, int]]]:
     """Return a list of faces, each a list of (loop, sign): first (outer border, 1), then (opening, -1) for
     each opening.
 
-    Loops are taken from the largest to the smallest. The first one is a border. Each other loop is one of
-    three: (a) an opening, where its left side lies on a face found so far; (b) otherwise a border, if it runs
-    counter-clockwise; (c) otherwise it is left out.
+    Loops are taken from the largest to the smallest. The first one is a border. Each further loop is an
+    opening if its left side lies on a face found so far. Otherwise it is a border if it runs
+    counter-clockwise, and is left out if it runs clockwise.
     """
     faces: list[list[tuple[Loop, int]]] = []
     sizes = [compute_signed_area(loop) for loop in loops]

@@ -1,11 +1,11 @@
-"""Proof of supports after the fact: every triple of a file derived again from the six equations of balance.
+"""Verification of supports: every triple of a file is derived again from the six equations of balance.
 
-Nothing of ``workhold.supports`` is used. Pads and tip are held against the faces segment by segment. Forces
-are solved from the balance in space together with the push on what moves. That is done at both ends of every
-band and at the stationary directions of every load. No barycentric coordinate, no worst height and no place
-of a clamp is taken from what is judged. That there is no better place of the clamp is
-tried at points of a grid. Numbers are doubles, and have to agree to 1e-6 of themselves.
-Of a complete list all other triples are tried too (``verification.support_listing``).
+The code of ``workhold.supports`` is not used. Pads and tip are compared with the faces segment by segment.
+Forces are solved from the balance in space together with the push on the moving carrier, at both ends of
+every band and at the stationary directions of every load. No barycentric coordinate, no worst height and no
+place of a clamp is taken from the list under test. Points of a grid are tried to test that there is no better
+place of the clamp. Numbers are doubles, and must agree to a relative 1e-6. For a complete list all other
+triples are tried too (``verification.support_listing``).
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ class SupportsJudge(SupportPlaces):
 
     Parameters
     ----------
-    loads, jaw_force : what a file says, in N.
+    loads, jaw_force : the file's loads and jaw force, in N.
     """
 
     loads: tuple[SpatialLoad, ...]
@@ -174,9 +174,7 @@ class SupportsJudge(SupportPlaces):
         return least, most
 
     def compute_shares(self, solved: Array, point: Sequence[float]) -> Array:
-        """Return the force (3,) that each support takes of a unit of clamp
-        force at a point of the part's frame.
-        """
+        """Return the force (3,) on each support per unit of clamp force at a point of the part's frame."""
         return np.asarray((solved @ self.make_right_side([*point, 0.0], [0, 0, -1.0], [0, 0, 0], 0.0))[0])
 
     def find_faults(self, part: ReadTriple) -> Iterator[str]:
@@ -342,7 +340,7 @@ def find_band_faults(query: Query, fixture: Fixture, request: SupportRequest) ->
     """Yield one sentence for each peg whose written band of heights differs from the band of the solid's face
     it touches.
 
-    Yields nothing where there is no solid or no band is written.
+    Yields nothing if there is no solid or no band is written.
     """
     bands, numbered = request.bands, query.workpiece.numbered
     if query.workpiece.solid is None or bands is None:

@@ -1,12 +1,12 @@
-"""The numbers that decide in a verification, and what a rule finds against a fixture by them.
+"""The numbers that decide in a verification, and the findings of rules against a fixture.
 
-The numbers are a copy of those of ``workhold.conventions``, on purpose: a verification shares no rule with
-what it judges, not even by a common constant. So a number changed by mistake on one side is seen from the
-other. Both are held to the table of docs/belief.md, "Conventions that are part of the claim".
+The numbers are deliberately a copy of those of ``workhold.conventions``: a verification shares no rule with
+the code that it judges, not even a constant. So a number changed by mistake on one side is noticed on the
+other. Both are compared with the table of docs/belief.md, "Conventions that are part of the claim".
 
 Drawings are made with round numbers. So two faces are often exactly as far apart as two holes, or a contact
-is exactly at the joint of two faces. The coordinates of a drawing are rounded, which spoils such a
-coincidence by some 1e-13 mm in one direction or the other. A rule with its edge at the coincidence would be
+is exactly at the joint of two faces. The coordinates of a drawing are rounded, which shifts such a
+coincidence by some 1e-13 mm in one direction or the other. A rule with its limit at the coincidence would be
 decided by that rounding. Therefore
 
 - a gap or an opening is met when it is missed by no more than a hair;
@@ -125,10 +125,10 @@ class Finding:
 
 
 def judge_slack(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
-    """Yield nothing where a slack is certainly positive, else one finding.
+    """Yield nothing if a slack is certainly positive, else one finding.
 
-    Two cases: (a) the slack is certainly negative: a definite finding with the words ``broken``; (b) that is
-    uncertain: an undecided finding with the words ``edge``, or ``broken`` where ``edge`` is empty.
+    If the slack is certainly negative, it is a definite finding with the words ``broken``. If that is
+    uncertain, it is an undecided finding with the words ``edge``, or ``broken`` if ``edge`` is empty.
     """
     if not slack > 0:
         definite = bool(slack < 0)
@@ -136,9 +136,7 @@ def judge_slack(slack: arb, broken: str, edge: str = "") -> Iterator[Finding]:
 
 
 def judge_written_number(name: str, value: float, derived: arb, spare: arb) -> Iterator[Finding]:
-    """Yield a finding where a number of the file differs from the derived one
-    by more than ``HAIR`` + ``spare``.
-    """
+    """Yield a finding if a number of the file differs from the derived one by more than ``HAIR`` + ``spare``."""
     slack = HAIR + spare - abs(derived - value)
     if not slack > 0:
         yield from judge_slack(

@@ -1,14 +1,14 @@
-"""How near a program's tools come to what holds the part, by a walk along its moves with bounds.
+"""The clearance between a program's tools and the fixture, by a walk along the moves with bounds.
 
-The moves of the tool tip are walked as the program has them, not as the search simplifies them. A stretch of
-a move lies within its sagitta of its chord, so its distance from an element is that of the chord to within
-the sagitta. Stretches that cannot hold the least distance are left out. Others are halved, and so are those
-on which a cylinder of the tool comes down to the pegs' height or leaves it. Numbers are doubles: their
+The walk uses the program's own moves of the tool tip, not the search's simplified ones. A stretch of a move
+lies within its sagitta of its chord, so its distance from an element is that of the chord to within the
+sagitta. Stretches that cannot contain the least distance are dropped. The others are halved, and so are
+stretches on which a cylinder of the tool reaches the pegs' height or leaves it. Numbers are doubles: their
 rounding is far below the tolerance that decides, ``tolerances.AGREEMENT``.
 
 Glossary
 --------
-element : something that holds the part: a disc, a capsule (all within a radius of a middle line), or a half
+element : a part of the fixture: a disc, a capsule (all points within a radius of a middle line), or a half
     plane.
 stretch : a part of a move, between two shares of it (0 to 1), with one cylinder of its tool.
 sagitta : the largest distance of a stretch from its chord.
@@ -184,8 +184,8 @@ class ToolWalk:
     def find_nearest(
         self, element: HoldingElement, line: object = None, tool: object = None
     ) -> NearestApproach:
-        """Return bounds of the least clearance of an element from the tools; inf where no tool comes down to
-        its height.
+        """Return bounds of the least clearance of an element from the tools; inf if no tool comes down to its
+        height.
 
         The bounds are at most ``FINE`` mm apart, unless halving ends early. Without any approach the line is
         -1.
@@ -331,7 +331,7 @@ def make_walk(program: Program) -> ToolWalk:
 
 
 def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -> str:
-    """Return a sentence, without full stop, where a fixture and the program do not agree; "" where they do.
+    """Return a sentence, without full stop, if a fixture and the program disagree, else "".
 
     Two faults: a tool comes too near to the fixture; the written clearance is missing, superfluous or wrong.
     """
@@ -362,9 +362,9 @@ def find_program_fault(fixture: Fixture, query: Query, hardware: ToolkitRules) -
 def find_clearance_fault(
     fixture: Fixture, walk: ToolWalk, elements: Sequence[HoldingElement], least: NearestApproach
 ) -> str:
-    """Return a sentence where the file names a wrong nearest move; "" where it names the right one or none.
+    """Return a sentence if the file names a wrong nearest move; "" if it names the right one or none.
 
-    ``elements`` are what holds the part, and ``least`` is the derived nearest approach.
+    ``elements`` are the elements of the fixture, and ``least`` is the derived nearest approach.
     """
     said = fixture.passing
     if said is None:

@@ -1,9 +1,11 @@
-"""Whether a peg at its proven place touches its face, how far inside its ends, and nothing else of the part.
+"""Check that a peg at its proven place touches its face, far enough inside the face's ends, and no other face
+of the part.
 
 Rules, with the hair of ``tolerances``:
 
-- ends: a contact lies at least margin - hair inside the ends of the face. At an end that is not a tangent joint
-  it lies more than a hair inside, so without a margin a contact at such an end is none;
+- ends: a contact lies at least margin - hair inside the ends of the face. At an end that is not a tangent
+  joint it lies more than a hair inside, so even without a margin a contact exactly at such an end does not
+  count;
 - elsewhere: as far as that along its feature to both sides the peg, as if it had no flat, keeps clear of
   every other segment. So where the feature is trimmed, because the peg comes to touch a second face across
   its own, the contact lies so far inside too.
@@ -74,9 +76,9 @@ def measure_edge_distances(
     path.
 
     The path runs ``radius`` mm from the side; ``beside`` are its barriers, the ranges in which the peg would
-    enter another side. ``smooth`` says of start and end whether it is a tangent joint; such ends are left
-    out. Distances are negative within a barrier or beyond an end. Returns [] for a whole circle: nothing
-    trims its path, since everything else lies beyond the material behind it.
+    enter another side. ``smooth`` tells whether the start and the end are tangent joints; such ends are left
+    out. Distances are negative within a barrier or beyond an end. Returns [] for a whole circle: no side
+    trims its path, since all other sides lie beyond the material behind it.
     """
     if isinstance(side, ArcSide) and side.whole:
         return []
@@ -91,8 +93,8 @@ def find_barriers(side: Side, radius: arb, body: arb, others: Iterable[Side]) ->
     enter one of the sides ``others``.
 
     A place is the arc length in mm along the path of the peg's centre, ``radius`` mm from the side. ``body``
-    is the peg's own radius in mm, larger than ``radius`` where its flat lies on the side. Returns [] on a
-    whole circle.
+    is the peg's own radius in mm, larger than ``radius`` if its flat lies on the side. Returns [] on a whole
+    circle.
     """
     if (isinstance(side, ArcSide) and side.whole) or not body > HAIR:
         return []
@@ -218,7 +220,7 @@ def find_points_on_ring(side: ArcSide, radius: arb, axis: Point, cosine: arb) ->
     with ``axis``.
 
     ``axis`` is a unit vector and ``cosine`` the cosine of the angle. The path is taken as a full circle, so
-    there are two points. Yields nothing where the cosine is certainly above 1 in size.
+    there are two points. Yields nothing if the cosine is certainly above 1 in absolute value.
     """
     square = 1 - cosine * cosine
     if not square < 0:
@@ -236,10 +238,10 @@ SHORTEST = HAIR / 1024
 def judge_touching(
     name: str, contact: BallContact, face: int, pose: BallPose, outline: BallOutline, margin: float
 ) -> Iterator[Finding]:
-    """Yield a finding where a peg enters the part, or touches a face too near to an end of its path.
+    """Yield a finding if a peg enters the part, or touches a face too near to an end of its path.
 
     Too near is less than ``margin`` mm inside the end. ``face`` is the number of the face touched;
-    ``outline`` is what the peg must keep clear of.
+    ``outline`` is the outline that the peg must keep clear of.
     """
     center = contact.compute_center_in_part(pose)
     close = f"{name} is nearer than {margin:g} mm to the end of its feature on face {face}"

@@ -1,14 +1,14 @@
-"""Whether an undecided entry of a proof is a real place: four contacts, or two chords, that may exist.
+"""Check that an undecided entry of a proof is a possible place: four contacts, or two chords, that may exist.
 
 The entry names faces, holes and a range of orientations. In the workpiece's frame each peg's centre moves on
-the line or circle of its face, offset outward by the peg radius. Each other peg of a jaw gives such a curve
-for the jaw's first peg, if it is moved back by the step between their holes. Where two of these curves cross
-is computed in ball arithmetic, and so the centres of all pegs of the jaw are known. Each peg must then touch
-its face between the face's ends. Pegs of two jaws must stand in rows as far apart as the entry says, and at
-least the smallest gap apart.
+the line or circle of its face, offset outward by the peg radius. The curve of each other peg of a jaw, moved
+back by the step between their holes, is also a curve for the jaw's first peg. The crossings of two of these
+curves are computed in ball arithmetic; they give the centres of all pegs of the jaw. Each peg must then touch
+its face between the face's ends. The rows of the pegs of two jaws must have the distance given in the entry,
+and the pegs must be at least the smallest gap apart.
 
-A condition that certainly fails in the whole range is a fault. Where curves are parallel nothing is decided.
-An undecided entry need not be a solution: it may miss one by as much as pegs move within the range.
+A condition that certainly fails in the whole range is a fault. Parallel curves decide nothing. An undecided
+entry need not be a solution: it may miss one by the distance that pegs move within the range.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def find_undecided_faults(entries: Sequence[UndecidedCandidate], query: Query) -
 
 
 def find_entry_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
-    """Return a verb phrase that says what is wrong with an entry; "" where nothing is.
+    """Return a verb phrase that describes the fault of an entry; "" if there is none.
 
     The entry has four contacts, or is a pair of chords.
     """
@@ -147,7 +147,7 @@ def is_of_chords(entry: UndecidedCandidate) -> bool:
 
 
 def find_arrangement(entry: UndecidedCandidate, query: Query) -> Arrangement:
-    """Return the arrangement whose title (type, and direction where there are several) is the entry's."""
+    """Return the arrangement whose title is the entry's: its type, and its direction if there are several."""
     return next(one for one in query.toolkit.arrangements if one.title == entry.type)
 
 
@@ -181,9 +181,7 @@ def group_pegs(entry: UndecidedCandidate, query: Query) -> list[list[int]]:
 
 
 def find_written_fault(entry: UndecidedCandidate, query: Query, outline: BallOutline) -> str:
-    """Return a verb phrase where an entry's type, reason, reach or face numbers are wrong; "" where they are
-    right.
-    """
+    """Return a verb phrase if an entry's type, reason, reach or face numbers are wrong, else ""."""
     if entry.type not in [one.title for one in query.toolkit.arrangements if one.name in query.types]:
         return f"is of type {entry.type}, which is not asked for"
     if entry.reason not in REASONS:
@@ -289,7 +287,7 @@ def find_first_peg_places(group: Sequence[TouchingPeg]) -> list[Point] | None:
     """Return the possible centres of a jaw's first peg, in the part's frame, at which all pegs of the jaw
     touch.
 
-    Returns None where the centre may be anywhere along a path, and [] where there is no such centre.
+    Returns None if the centre may be anywhere along a path, and [] if there is no such centre.
     """
     one = group[0]
     other = next((peg for peg in group[1:] if are_across(one, peg)), None)
@@ -359,7 +357,7 @@ def find_places_on_row(moved: TouchingPeg, tail: Point, up: arb, turn: Point) ->
     """Return the possible centres, in the part's frame, of a peg whose row is ``up`` mm above the row of the
     peg at ``tail``.
 
-    ``turn`` is (cosine, sine) of the orientation. Returns None where the peg's side runs along the row.
+    ``turn`` is (cosine, sine) of the orientation. Returns None if the peg's side runs along the row.
     """
     side, across = moved.side, turn_vector((arb(0), arb(1)), turn[0], -turn[1])
     if isinstance(side, LineSide):

@@ -182,10 +182,10 @@ class Judge:
         measure: FigureMeasure,
         is_proven: bool,
     ) -> Iterator[Finding]:
-        """Yield a finding where a fixture's contacts do not close at a pose, or written forces and figures
-        are wrong.
+        """Yield a finding if a fixture's contacts do not close at a pose, or written forces and figures are
+        wrong.
 
-        ``is_proven`` says whether the pose is proven. Where it is not, some rules are skipped.
+        ``is_proven`` tells whether the pose is proven. If it is not, some rules are skipped.
         """
         hardware, pair = self.hardware, fixture.pair
         if pair is None:
@@ -237,7 +237,7 @@ class Judge:
 def judge_flats(fixture: Fixture, names: Sequence[str], contacts: Sequence[BallContact]) -> Iterator[Finding]:
     """Yield a finding for each peg whose flat does not face its side.
 
-    Also yields one where the file states a flat for a peg without one, or omits a flat.
+    Also yields one if the file states a flat for a peg without one, or omits a flat.
     """
     for name, peg, contact in zip(names, fixture.pegs, contacts, strict=True):
         lies = contact.body is not None and isinstance(contact.side, LineSide)
@@ -289,7 +289,7 @@ class Verification:
     ----------
     proven, refuted, undecided : numbers of fixtures.
     unproven : the fixtures that are not proven, in the order of the file.
-    faults : what is wrong with the result as a whole, one sentence each, without a full stop.
+    faults : faults of the result as a whole, one sentence each, without a full stop.
     bits : the highest precision that was needed.
     is_compared : whether the query was answered again, and the result compared with that answer.
     """
@@ -314,7 +314,7 @@ class Verification:
 
 
 def list_not_shown(toolkit: Toolkit, is_seated: bool = False) -> Iterator[str]:
-    """Yield sentences on what a result alone cannot show but answering its query again would show.
+    """Yield sentences on claims that a result alone cannot show but a new search with its query would show.
 
     ``is_seated`` says whether the result states seating.
     """

@@ -1,9 +1,8 @@
-"""The rules of a toolkit, put together as its carriers say, and those about its holes.
+"""The rules of a toolkit, composed from the rules of its carriers, and the rules about its holes.
 
-Each carrier says whether it stands still or slides, and which kind of contact it makes. That is a peg in a
-hole of its own, the tip of a clamp bolted in a hole of another carrier, or an end of a wall. With two clamps
-one pair may be listed for all pairs of its seat. Then fixtures of one seat and pair of
-directions are the same.
+Each carrier is fixed or slides, and has one kind of contact: a peg in a hole of its own, the tip of a clamp
+bolted in a hole of another carrier, or an end of a wall. With two clamps, one pair may be listed to represent
+all pairs of its seat. Then fixtures of one seat and pair of directions are the same.
 """
 
 from __future__ import annotations
@@ -65,12 +64,12 @@ class ToolkitRules:
 
     @cached_property
     def carriers(self) -> dict[str, Carrier]:
-        """The carriers on which pegs stand, by name."""
+        """The carriers of pegs, by name."""
         return {one.name: one for one in self.toolkit.carriers}
 
     @cached_property
     def lattices(self) -> list[Carrier]:
-        """The carriers with holes of their own, those that stand still first."""
+        """The carriers with holes of their own, the fixed ones first."""
         return [one for one in self.carriers.values() if one.has_lattice]
 
     @cached_property
@@ -90,8 +89,8 @@ class ToolkitRules:
 
     @cached_property
     def jaw(self) -> EndedWall | None:
-        """The wall with ends, centred on the columns beside it; None where the toolkit has no wall or an
-        endless one.
+        """The wall with ends, centred on the columns beside it; None if the toolkit has no wall or an endless
+        one.
         """
         for wall in self.walls:
             columns = self.lattices[0].columns
@@ -100,7 +99,7 @@ class ToolkitRules:
         return None
 
     def has_carriers(self, fixture: Fixture) -> bool:
-        """Return whether the toolkit has every carrier on which the fixture's pegs stand."""
+        """Return whether the toolkit has the carriers of all the fixture's pegs."""
         return all(peg.carrier in self.carriers for peg in fixture.pegs)
 
     @property
@@ -112,7 +111,7 @@ class ToolkitRules:
 
     @property
     def keeps_rows(self) -> bool:
-        """Whether rows count from a wall, because the lattice beside the wall does not move."""
+        """Whether rows are counted from a wall, because the lattice beside the wall does not move."""
         return bool(self.walls) and self.lattices[0].travel is None
 
     @cached_property
@@ -132,7 +131,7 @@ class ToolkitRules:
     def stroke(self) -> ClampStroke:
         """The rules of each clamp's stroke.
 
-        Where a clamp has a stroke, its tip is at its hole at a travel of minus the stroke.
+        If a clamp has a stroke, its tip is at its hole at a travel of minus the stroke.
         """
         travel = next((tip.travel for tip in self.tips.values()), None)
         span = None if travel is None or travel.most is None else (-travel.most, -travel.least)
@@ -140,7 +139,7 @@ class ToolkitRules:
 
     @cached_property
     def from_lowest(self) -> tuple[str, ...]:
-        """Those of the nouns "column" and "row" that are counted from the lowest one in use.
+        """The nouns, of "column" and "row", that are counted from the lowest one in use.
 
         Rows beside a wall are counted from the wall instead.
         """
@@ -238,12 +237,12 @@ class ToolkitRules:
         return len(directions) == self.clamps and order(there) == order(wanted)
 
     def complete_fixture(self, fixture: Fixture) -> Fixture:
-        """Return a fixture with travels in mm added, at which its clamps' tips are where they are written.
+        """Return a fixture with the travels in mm added at which its clamps' tips have their written places.
 
         Raises
         ------
         InputError
-            When the fixture is of another type, or its pegs stand on carriers that the toolkit does not have.
+            When the fixture is of another type, or its pegs have carriers that are not in the toolkit.
         """
         types = self.toolkit.types
         clamps = 2 if fixture.pair is not None else 1 if fixture.direction is not None else 0
@@ -306,8 +305,8 @@ class ToolkitRules:
     ) -> list[BallContact]:
         """Return the contacts at which the forces act at a pose.
 
-        They are ``contacts``, but on a wall that has ends (a flat jaw) the ends of the stretch common to part
-        and jaw take the place of the ends of the whole contact.
+        They are ``contacts``, except on a wall that has ends (a flat jaw): there the ends of the stretch
+        common to part and jaw replace the ends of the whole contact.
         """
         if self.jaw is None:
             return [*contacts]
@@ -323,8 +322,8 @@ class ToolkitRules:
         outline: BallOutline,
         shares: Sequence[arb],
     ) -> Iterator[Finding]:
-        """Yield a finding where a jaw with ends is too short for its force, or other columns would hold the
-        part better.
+        """Yield a finding if a jaw with ends is too short for its force, or other columns would hold the part
+        better.
 
         ``contacts`` and ``shares`` are those for an endless wall. Yields nothing for a toolkit without a jaw
         with ends.
@@ -372,10 +371,10 @@ class ToolkitRules:
                 yield from judge_slack(AGREEMENT - off, words)
 
     def judge_question(self, fixture: Fixture) -> Iterator[Finding]:
-        """Yield a finding where a fixture does not answer the query: wrong pegs for its type, or directions
-        not asked for.
+        """Yield a finding if a fixture does not answer the query: wrong pegs for its type, or directions that
+        the query excludes.
 
-        Also yields one where two pegs share a hole.
+        Also yields one if two pegs share a hole.
         """
         directions, pegs = list_directions(fixture), fixture.pegs
         if not self.has_its_pegs(fixture) and len(self.lattices) > 1:
@@ -432,7 +431,7 @@ class ToolkitRules:
         return not find_direction(peg) or self.stroke.span is not None or is_along_x(peg) == (noun == "row")
 
     def judge_clamp_place(self, name: str, clamp: Peg) -> Iterator[Finding]:
-        """Yield a finding where a bolted clamp is not named by its hole, or an unbolted clamp by its row or
+        """Yield a finding if a bolted clamp is not named by its hole, or an unbolted clamp by its row or
         column.
         """
         is_bolted = self.stroke.span is not None
@@ -448,7 +447,7 @@ class ToolkitRules:
     def judge_standing(
         self, fixture: Fixture, contacts: Sequence[BallContact], pose: BallPose, outline: BallOutline
     ) -> Iterator[Finding]:
-        """Yield a finding for each wall, jaw, locator or clamp that cannot stand as it does at a pose."""
+        """Yield a finding for each wall, jaw, locator or clamp whose place is impossible at a pose."""
         named = list(zip(self.names, fixture.pegs, contacts, strict=True))
         if self.walls:
             ends = [(name, peg, end) for name, peg, end in named if isinstance(end, WallContact)]

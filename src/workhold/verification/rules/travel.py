@@ -1,16 +1,16 @@
 """Carriers that travel: how far jaws open and close, and the stroke and bodies of clamps bolted in a hole.
 
 A jaw has holes of its own and slides. Its separation is counted from a wall, or from the column of the other
-jaw that is next to the opening. So no peg is nearer to what stands still.
+jaw next to the opening. So no peg is nearer to the fixed carrier.
 
-A clamp travels along a line of holes. One with a stroke is bolted in the nearest hole behind its tip that
-fits everything. Its body, all that is within its radius of the piece from hole to tip, contains that of the
-same clamp in a nearer hole. Where it clears locators and part, it would from there as well. So a nearer hole
-is left out only because it is off the plate or too near.
+A clamp travels along a line of holes. A clamp with a stroke is bolted in the nearest suitable hole behind its
+tip. Its body consists of all points within its radius of the segment from hole to tip, so it contains the
+body for a nearer hole. If it clears locators and part, the body for a nearer hole does so as well. So a
+nearer hole is skipped only because it is off the plate or too near.
 
-The distance of a straight piece from a side is least at an end of either or where they cross. From an arc's
-outside it may also be least at the foot of the perpendicular from the arc's centre. From inside a circle it
-has no minimum between the ends of a piece.
+The distance of a straight piece from a side is least at an end of either or at a crossing. Outside an arc it
+may also be least at the foot of the perpendicular from the arc's centre. Inside a circle it has no minimum
+between the ends of a piece.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def judge_opening(jaw: Carrier, separation: arb) -> Iterator[Finding]:
 
 
 def judge_nearest_rows(jaw: Carrier, lowest: int, separation: arb) -> Iterator[Finding]:
-    """Yield a finding where a jaw that slides along its rows could have its pegs one row nearer to the part.
+    """Yield a finding if a jaw that slides along its rows could have its pegs one row nearer to the part.
 
     ``lowest`` is the first row in use and ``separation`` is in mm. With the pegs one row nearer, the jaw
     would stand one pitch farther from the wall.
@@ -105,7 +105,7 @@ OPPOSITE = {"-x": "+x", "+x": "-x", "-y": "+y", "+y": "-y"}
 
 
 def list_directions(fixture: Fixture) -> tuple[str, ...]:
-    """Return the directions of a fixture's clamps, () where it has none."""
+    """Return the directions of a fixture's clamps, () if it has none."""
     return tuple((fixture.direction or "").split())
 
 
@@ -154,7 +154,9 @@ def name_clamp_place(on: str, direction: str, column: int, row: int, is_bolted: 
 
 
 def measure_travel(peg: Peg, carrier: Carrier) -> float:
-    """Return how far in mm a peg has travelled on its carrier from its hole to where it is written."""
+    """Return the distance in mm between the written place of a peg and its hole, along its carrier's
+    direction.
+    """
     (x, y), (pitch_x, pitch_y) = carrier.offset, carrier.pitch
     along, across = (0.0, 0.0) if carrier.travel is None else carrier.travel.unit
     return (peg.x - x - peg.column * pitch_x) * along + (peg.y - y - peg.row * pitch_y) * across
@@ -168,7 +170,7 @@ class ClampStroke:
     ----------
     span : (least, most) distance in mm from its hole to its tip; None for a clamp that consists of its tip
         alone.
-    wall : name of the wall that the clamp must keep clear of; empty where there is none.
+    wall : name of the wall that the clamp must keep clear of; empty if there is none.
     """
 
     span: tuple[float, float] | None

@@ -1,13 +1,13 @@
 """A straight wall that the part lies flush on, as two contacts at the ends of a hull edge.
 
-The wall runs along x at y = 0 with the part above it. What touches it is derived from the outline at the
-written pose: the lowest joints and convex arcs. The two ends are contacts like any other, each with an
-equation of its own: its lowest point is at y = 0.
+The wall runs along x at y = 0 with the part above it. The contacts are derived from the outline at the
+written pose: the lowest joints and convex arcs. The two ends are contacts like any other, each with its own
+equation: its lowest point is at y = 0.
 
 A wall that has ends, such as a flat jaw, covers only a range of x. The part touches the wall's line in faces
 along it, joints and arcs. The stretch from the first to the last of these points within that range is the
-common stretch, and the wall pushes at its ends. Where the wall's total force acts follows from the pegs
-alone, and does not depend on the range.
+common stretch, and the wall pushes at its ends. The point at which the wall's total force acts follows from
+the pegs alone and does not depend on the range.
 """
 
 from __future__ import annotations
@@ -111,8 +111,8 @@ class WallContact(BallContact):
 def make_wall_contacts(sides: Sequence[Side], outline: BallOutline, pose: BallPose) -> list[WallContact]:
     """Return [left end, right end] of the part's contact with a wall at a pose.
 
-    ``sides`` gives the side of each contact, left first. Where nothing lies on the wall, the two lowest
-    points are the ends.
+    ``sides`` gives the side of each contact, left first. If no face lies on the wall, the two lowest points
+    are the ends.
     """
     lows = [
         (float(y.mid()), float(x.mid()), piece)
@@ -199,10 +199,10 @@ class EndedWall:
 
     Parameters
     ----------
-    noun : what it is called.
+    noun : word for it.
     width : in mm.
     pitch : distance in mm between columns.
-    columns : how many there are.
+    columns : number of columns.
     """
 
     noun: str
@@ -260,11 +260,10 @@ class EndedWall:
     def judge(
         self, columns: Sequence[int], force_at: arb, outline: BallOutline, pose: BallPose
     ) -> Iterator[Finding]:
-        """Yield a finding where the jaw does not reach the wall's force, or other columns would hold the part
-        better.
+        """Yield a finding if the jaw does not extend to the wall's force, or other columns would hold the
+        part better.
 
-        ``columns`` are those in which the pegs stand; ``force_at`` is the x in mm at which the wall's force
-        acts.
+        ``columns`` are the columns of the pegs; ``force_at`` is the x in mm at which the wall's force acts.
         """
         first, found = min(columns), dict[int, tuple[SharedStretch, arb]]()
         for column in range(self.columns - (max(columns) - first)):
@@ -330,11 +329,11 @@ def check_flush(
     outline: BallOutline,
     stated: Sequence[WallContact] | None = None,
 ) -> Iterator[Finding]:
-    """Yield a finding where the part does not lie flush on a wall, or its two ends are not where they are
-    written.
+    """Yield a finding if the part does not lie flush on a wall, or its two ends are not at their written
+    places.
 
-    ``ends`` are (name, peg, contact) of the whole contact. ``stated`` are the contacts that the file states,
-    limited to what the wall covers; None means those of ``ends``. ``noun`` names the wall in messages.
+    ``ends`` are (name, peg, contact) of the whole contact. ``stated`` are the contacts in the file, limited
+    to the range of the wall; None means those of ``ends``. ``noun`` names the wall in messages.
     """
     (left, _), (right, _) = [contact.compute_point(pose) for _, _, contact in ends]
     yield from judge_slack(right - left - LEAST_FLUSH, f"the part does not lie flush on the {noun}")
