@@ -14,6 +14,8 @@ from typing import Any
 
 from attrs import astuple, evolve, fields
 
+from workhold.errors import InputError
+from workhold.files.part.finding import read_bytes
 from workhold.fixels.carrier import Carrier
 from workhold.model.fixture import Fixture
 from workhold.model.jaw_hold import JawHold
@@ -42,6 +44,7 @@ def verify(
     source: Result | str | Path,
     *,
     complete: bool = False,
+    part: str | Path | None = None,
     threads: int | None = None,
     progress: Progress | None = None,
     cancel: Event | None = None,
@@ -53,6 +56,7 @@ def verify(
     source : the result, or the path of its file.
     complete : also answer the query again, and compare the fixtures, their number, and the account of the
         search.
+    part : the STEP file that the part was read from, with which it is computed again how far fixtures bend it.
     threads, cancel : for this second search, see :func:`workhold.answer`; when it is cancelled, nothing is
         compared.
     progress : called as ``progress(fraction done, count)``. The count is that of fixtures not proven, and
@@ -74,9 +78,10 @@ def verify(
     """
     report = ignore_progress if progress is None else progress
     listing = collect_claims(source) if isinstance(source, Result) else read_listing(source)
+    kept = read_kept_shape(part, listing)
     if not complete:
-        return verify_listing(listing, report)
-    outcome = verify_listing(listing, lambda fraction, count: report(fraction / 2, count))
+        return verify_listing(listing, report, kept)
+    outcome = verify_listing(listing, lambda fraction, count: report(fraction / 2, count), kept)
     return complete_verification(
         outcome,
         listing,
@@ -84,6 +89,22 @@ def verify(
         cancel=cancel,
         progress=lambda done, count: report((1 + done) / 2, count),
     )
+
+
+def read_kept_shape(part: str | Path | None, listing: WrittenListing) -> str | None:
+    """Return the part's solid from its STEP file, in Open CASCADE's own form; None without a file.
+
+    Raises InputError when the file cannot be read, or holds another part.
+    """
+    if part is None:
+        return None
+    from workhold.files.step.part_shape import make_part_shape
+
+    path = Path(part)
+    try:
+        return make_part_shape(read_bytes(path), listing.query.workpiece).kept
+    except InputError as error:
+        raise InputError(f"{path.name}: {error}") from error
 
 
 def complete_verification(

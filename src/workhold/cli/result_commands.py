@@ -77,6 +77,7 @@ class VerifyTask:
     ----------
     of_supports : whether the file lists supports instead of fixtures.
     listed : number of unproven entries that are listed on the terminal.
+    part : STEP file of the part; None where none is given.
     complete, threads : whether a new search looks for fixtures missing from the file, and its number of
         threads.
     """
@@ -85,6 +86,7 @@ class VerifyTask:
     of_supports: bool
     listed: int
     complete: bool
+    part: str | None
     threads: int | None
     as_json: bool
 
@@ -108,6 +110,12 @@ def verify(
         "Also search again, and compare the fixtures, their number, and the account of the search.",
         "--complete",
     ),
+    part: str | None = make_option(
+        None,
+        "FILE",
+        "The STEP file that the result was designed from, to compute again how far fixtures bend the part.",
+        "--part",
+    ),
     threads: str | None = make_option(
         None, "N", "Threads of that search; as many as processors if not given."
     ),
@@ -124,11 +132,13 @@ def verify(
 
     Example: workhold verify part.json
     """
-    asked = parse(result_file, list_, complete, threads, json_)
+    asked = parse(result_file, list_, complete, part, threads, json_)
     report(asked, ask(asked))
 
 
-def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: bool) -> VerifyTask:
+def parse(
+    path: str, list_: str, complete: bool, part: str | None, threads: str | None, as_json: bool
+) -> VerifyTask:
     """Return what was typed as a task."""
     listed, workers = read_whole_number("--list", list_), read_optional_count("--threads", threads)
     from workhold.verification.supports import is_supports_file
@@ -138,11 +148,12 @@ def parse(path: str, list_: str, complete: bool, threads: str | None, as_json: b
         raise InputError(
             "--complete searches for fixtures again, and this file lists supports: leave it out."
         )
-    return VerifyTask(path, of_supports, listed, complete, workers, as_json)
+    return VerifyTask(path, of_supports, listed, complete, part, workers, as_json)
 
 
 def ask(asked: VerifyTask) -> VerifyAnswer:
     """Return the verification of everything in the file, compared with a new search if that was asked for."""
+    from workhold.completeness import read_kept_shape
     from workhold.verification.listing import read_listing
     from workhold.verification.supports import verify_supports_file
     from workhold.verification.verify import verify_listing
@@ -152,7 +163,7 @@ def ask(asked: VerifyTask) -> VerifyAnswer:
         return VerifyAnswer(verify_supports_file(asked.path), f"{perf_counter() - start:.1f} s")
     listing = read_listing(asked.path)
     with show_progress("Verifying", "not proven") as progress:
-        outcome = verify_listing(listing, progress)
+        outcome = verify_listing(listing, progress, read_kept_shape(asked.part, listing))
     if asked.complete:
         outcome = compare_with_search(outcome, listing, asked.threads)
     spent = f"{perf_counter() - start:.1f} s"
@@ -201,11 +212,15 @@ def describe_verified_scope(outcome: Verification, asked: bool, listing: Written
     from workhold.verification.verify import list_not_shown
 
     if outcome.is_compared:
-        return ["A search of the same query was compared with the file."]
+        return [*outcome.unchecked, "A search of the same query was compared with the file."]
     if asked:
-        return ["The search was interrupted, so nothing was compared."]
+        return [*outcome.unchecked, "The search was interrupted, so nothing was compared."]
     points = list_not_shown(listing.query.toolkit, listing.query.seating is not None)
-    return ["A file alone cannot show this; --complete checks it:", *(f"  - {point}" for point in points)]
+    return [
+        *outcome.unchecked,
+        "A file alone cannot show this; --complete checks it:",
+        *(f"  - {point}" for point in points),
+    ]
 
 
 def summarize_verification(outcome: Verification) -> str:

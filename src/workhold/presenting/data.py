@@ -348,6 +348,7 @@ def describe_verification(outcome: Verification) -> dict[str, Any]:
         "bits": outcome.bits,
         "is_compared": outcome.is_compared,
         "faults": list(outcome.faults),
+        "unchecked": list(outcome.unchecked),
         "unproven": [
             {"rank": one.index + 1, "verdict": one.verdict, "reason": one.reason} for one in outcome.unproven
         ],

@@ -20,6 +20,7 @@ from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.verification.account import find_account_faults, find_seat_faults
 from workhold.verification.ball_geometry import PRECISIONS, ArcSide, LineSide, compute_norm
+from workhold.verification.bending.checking import list_unchecked, rule_on_bendings
 from workhold.verification.contacts import Balance, BallContact, BallPose, judge_closure, select_outline_for
 from workhold.verification.figures import FigureMeasure, find_missing_figure, judge_written_numbers
 from workhold.verification.flat_jaws import JawJudge
@@ -261,6 +262,9 @@ NOT_SHOWN = (
     "whether a search that says it was interrupted was",
 )
 
+# The share of the work that is done before bending is computed again.
+BEFORE_BENDING = 0.3
+
 # Called with the fraction done and the number of fixtures not proven so far.
 Progress = Callable[[float, int], None]
 
@@ -292,6 +296,7 @@ class Verification:
     faults : faults of the result as a whole, one sentence each, without a full stop.
     bits : the highest precision that was needed.
     is_compared : whether the query was answered again, and the result compared with that answer.
+    unchecked : sentences on what of the file was not checked.
     """
 
     proven: int
@@ -301,6 +306,7 @@ class Verification:
     faults: tuple[str, ...]
     bits: int
     is_compared: bool = False
+    unchecked: tuple[str, ...] = ()
 
     @property
     def fixtures(self) -> int:
@@ -365,7 +371,7 @@ def verify_file(path: str | Path, progress: Progress = ignore_progress) -> Verif
     return verify_listing(read_listing(path), progress)
 
 
-def verify_holds(listing: WrittenListing, progress: Progress) -> Verification:
+def verify_holds(listing: WrittenListing, progress: Progress, kept: str | None) -> Verification:
     """Return the verification of a result of flat jaws or of straps."""
     is_strapped = listing.query.toolkit.strap_set is not None
     judge = StrapJudge(listing.query) if is_strapped else JawJudge(listing.query)
@@ -375,6 +381,11 @@ def verify_holds(listing: WrittenListing, progress: Progress) -> Verification:
         if fault is not None:
             unproven.append(Unproven(place, "refuted", fault))
         progress((place + 1) / len(listing.fixtures), len(unproven))
+    known = {one.index for one in unproven}
+    for ruling in rule_on_bendings(listing.query, listing.fixtures, kept, known, ignore_count):
+        if ruling.is_refuted:
+            unproven.append(Unproven(ruling.index, "refuted", ruling.reason))
+    unproven.sort(key=lambda one: one.index)
     listed = dict.fromkeys(listing.query.toolkit.types, 0)
     for fixture in listing.fixtures:
         listed[fixture.type] = listed.get(fixture.type, 0) + 1
@@ -385,22 +396,31 @@ def verify_holds(listing: WrittenListing, progress: Progress) -> Verification:
     if any(listing.found[name] < count for name, count in listed.items()):
         faults.append("fewer fixtures are found than listed")
     proven = len(listing.fixtures) - len(unproven)
-    return Verification(proven, len(unproven), 0, tuple(unproven), tuple(faults), 53)
+    unchecked = list_unchecked(listing.query, listing.fixtures, kept)
+    return Verification(proven, len(unproven), 0, tuple(unproven), tuple(faults), 53, unchecked=unchecked)
 
 
-def verify_listing(listing: WrittenListing, progress: Progress = ignore_progress) -> Verification:
+def ignore_count(done: int, count: int) -> None:
+    """Do nothing: of what is not computed again no progress is told."""
+
+
+def verify_listing(
+    listing: WrittenListing, progress: Progress = ignore_progress, kept: str | None = None
+) -> Verification:
     """Return the verification of a listing: the ruling on each fixture and the faults of the whole.
 
-    ``progress`` is called after each fixture.
+    ``progress`` is called after each fixture. ``kept`` is the part's solid in Open CASCADE's own form, from which it is
+    computed again how far fixtures bend it; None for a drawn part, and where it is not there.
     """
     query, everything = listing.query, listing.fixtures
     if query.toolkit.holds_by_friction:
-        return verify_holds(listing, progress)
+        return verify_holds(listing, progress, kept)
     judge, seating = Judge(query), SeatingJudge(query)
     turning = PartRotations.from_workpiece(query.workpiece)
     seen = KnownFixtures.make_empty(turning, judge.hardware)
     rulings: list[tuple[Verdict, str]] = []
     bits, doubtful = PRECISIONS[0], 0
+    before_bending = BEFORE_BENDING if any(fixture.bent is not None for fixture in everything) else 1.0
     for place, fixture in enumerate(everything):
         ruling = judge.rule_on(fixture)
         verdict, reason = ruling.verdict, ruling.reason
@@ -415,7 +435,14 @@ def verify_listing(listing: WrittenListing, progress: Progress = ignore_progress
             verdict, reason = "refuted", f"{judge.hardware.same_words} fixture {first + 1}"
         rulings.append((verdict, reason))
         doubtful += verdict != "proven"
-        progress((place + 1) / len(everything), doubtful)
+        progress((place + 1) / len(everything) * before_bending, doubtful)
+
+    def tell(done: int, count: int) -> None:
+        progress(before_bending + (1.0 - before_bending) * done / count, doubtful)
+
+    wrong = {place for place, (verdict, _) in enumerate(rulings) if verdict == "refuted"}
+    for bending in rule_on_bendings(query, everything, kept, wrong, tell):
+        rulings[bending.index] = ("refuted" if bending.is_refuted else "undecided", bending.reason)
     unproven = [Unproven(place, *ruling) for place, ruling in enumerate(rulings) if ruling[0] != "proven"]
     refuted = {one.index for one in unproven if one.verdict == "refuted"}
     faults = [
@@ -438,7 +465,8 @@ def verify_listing(listing: WrittenListing, progress: Progress = ignore_progress
     if not refuted and turning.is_certain:
         faults += find_distinct_faults(listing, seen)
     tally = len(rulings) - len(unproven), len(refuted), len(unproven) - len(refuted)
-    return Verification(*tally, tuple(unproven), tuple(faults), bits)
+    unchecked = list_unchecked(query, everything, kept)
+    return Verification(*tally, tuple(unproven), tuple(faults), bits, unchecked=unchecked)
 
 
 def find_distinct_faults(listing: WrittenListing, seen: KnownFixtures) -> Iterator[str]:
