@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from math import ceil, floor
+from math import ceil, floor, inf
 
 from attrs import frozen
 
@@ -19,6 +19,7 @@ __all__ = [
     "find_pixels_per_inch",
     "find_unit",
     "format_rounded_down",
+    "format_times",
 ]
 
 # N in a pound-force: 0.453 592 37 kg under 9.806 65 m/s2, both exact by definition (1959 and 1901).
@@ -219,6 +220,15 @@ def format_rounded_down(number: float) -> str:
     ('1.99', '0.30')
     """
     return f"{floor(number * 100.0 + ROUNDING) / 100.0:.2f}"
+
+
+def format_times(times: float) -> str:
+    """Return a number of times as words; a number is rounded down to two decimals.
+
+    >>> format_times(2.349), format_times(inf)
+    ('2.34 times', 'any number of times')
+    """
+    return "any number of times" if times == inf else f"{format_rounded_down(times)} times"
 
 
 def find_unit(name: str) -> Unit:

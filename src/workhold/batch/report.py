@@ -25,6 +25,8 @@ from workhold.batch.tables import JobRow, Row, holds_by_friction, list_job_rows,
 from workhold.drawing.panel import format_count
 from workhold.errors import make_printable
 from workhold.files.atomic import explain_system_errors, write_bytes, write_text_file
+from workhold.presenting.figure_words import ROUNDED_DOWN
+from workhold.units import format_rounded_down
 
 __all__ = ["Report", "Summary", "write_results"]
 
@@ -191,7 +193,10 @@ class Report:
                 bad=row["state"] in BAD,
             ),
             format_figure(row["fixtures"], 0),
-            *(format_figure(row.get(key), decimals) for _, key, decimals in self.figures),
+            *(
+                format_figure(row.get(key), decimals, key in ROUNDED_DOWN)
+                for _, key, decimals in self.figures
+            ),
             format_figure(row["seconds"], 2),
             format_figure(row["estimated_seconds"], 2),
         ]
@@ -290,11 +295,15 @@ def make_cell(content: str, *, key: str | None = None, name: str = "", bad: bool
     return f"<td{attributes}>{content}</td>"
 
 
-def format_figure(value: float | None, decimals: int) -> str:
-    """Return a table cell with a number rounded to a number of decimals; an empty cell for None."""
+def format_figure(value: float | None, decimals: int, is_rounded_down: bool = False) -> str:
+    """Return a table cell with a number rounded to a number of decimals; an empty cell for None.
+
+    ``is_rounded_down`` rounds it down to two decimals instead.
+    """
     if value is None:
         return make_cell("", name="n")
-    return make_cell(f"{value:,.{decimals}f}", key=f"{value:.12g}", name="n")
+    text = format_rounded_down(value) if is_rounded_down else f"{value:,.{decimals}f}"
+    return make_cell(text, key=f"{value:.12g}", name="n")
 
 
 # Letters of a sheet's name that come of its part and toolkit, and of its record's name.

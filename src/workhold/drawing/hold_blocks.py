@@ -37,6 +37,7 @@ from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 from workhold.statics.jaw_clearance import list_vise_sentences
 from workhold.statics.jaw_program import describe_asked_force
+from workhold.units import format_times
 
 __all__ = ["draw_hold_panel", "list_hold_blocks", "list_raw_zero_facts"]
 
@@ -90,10 +91,10 @@ def write_figures(column: TextColumn, fixture: Fixture, lengths: LengthUnit) -> 
         column.write_fact("Jaw force needed", "no force holds all loads", bold=True)
     if hold.slip_reserve is not None:
         column.write_fact(
-            "Rated for", f"{unit.format_force(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that"
+            "Rated for", f"{unit.format_force(hold.max_force or 0.0)}, {format_times(hold.slip_reserve)} that"
         )
     if hold.safety_reached is not None:
-        column.write_fact("With the jaw force given", f"{hold.safety_reached:.2f} times the loads")
+        column.write_fact("With the jaw force given", f"{format_times(hold.safety_reached)} the loads")
     column.write_fact("Grip", lengths.format_short(hold.grip, 5))
     if hold.above is not None:
         column.write_fact("Stands above the jaws", lengths.format_short(hold.above, 5))
@@ -242,7 +243,7 @@ def write_force(column: TextColumn, sheet: SetupSheet) -> None:
         column.write_fact("the vise is rated for", unit.format_force(hold.max_force or 0.0))
     if hold.safety_reached is not None:
         given = unit.format_force(find_sheet_query(sheet).jaw_force or 0.0)
-        column.write_fact(f"closed with {given}", f"{hold.safety_reached:.2f} times the loads")
+        column.write_fact(f"closed with {given}", f"{format_times(hold.safety_reached)} the loads")
     if hold.max_pressure is not None:
         column.write_fact("largest pressure, at least", format_pressure(hold.max_pressure, sheet.lengths))
     query = find_sheet_query(sheet)
@@ -289,8 +290,13 @@ def write_hold_loads(column: TextColumn, sheet: SetupSheet) -> None:
         if load.upward:
             sizes.append(f"{unit.format_force(abs(load.upward))} {'up' if load.upward > 0 else 'down'}")
         name = ": ".join((load.name or f"load {number}", *filter(None, [", ".join(sizes)])))
-        column.write_fact(
-            name, "none holds it" if need is None else unit.format_force_number(need, 0), bold=True
+        words = "none holds it" if need is None else unit.format_force_number(need, 0)
+        if need is not None and hold.safety_each:
+            words += f", held {format_times(hold.safety_each[number - 1])}"
+        column.write_fact(name, words, bold=True)
+    if hold.safety_each and query.jaw_force is not None:
+        column.write_paragraph(
+            f"How many times each load is held: closed with {unit.format_force(query.jaw_force)}.", NOTE
         )
     if len(pairs) > MOST_LOADS:
         column.write_paragraph(f"The hardest {MOST_LOADS} of {len(pairs)} loads.", NOTE)

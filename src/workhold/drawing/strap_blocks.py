@@ -13,11 +13,11 @@ from workhold.supports.words_of_straps import (
     describe_assumptions,
     describe_program_need,
     describe_program_safety,
-    format_times,
     list_remarks,
     list_steps,
     list_warnings,
 )
+from workhold.units import format_times
 
 __all__ = ["draw_strap_panel", "list_strap_writers"]
 
@@ -64,7 +64,7 @@ def write_force_needed(column: TextColumn, fixture: Fixture, lengths: LengthUnit
     if hold.slip_reserve is not None:
         column.write_fact(
             "A strap is rated for",
-            f"{unit.format_force(hold.max_force or 0.0)}, {hold.slip_reserve:.2f} times that",
+            f"{unit.format_force(hold.max_force or 0.0)}, {format_times(hold.slip_reserve)} that",
         )
     given = asked.given_force
     if given is not None and hold.safety_reached is not None:

@@ -6,7 +6,7 @@ from math import inf, isfinite, isnan
 from typing import TYPE_CHECKING
 
 from workhold.fixels.contacts import CLAMP_TIP
-from workhold.units import Unit
+from workhold.units import Unit, format_rounded_down
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from workhold.model.workpiece import Workpiece
 
 __all__ = [
+    "ROUNDED_DOWN",
     "format_ranked_figure",
     "mark_edgeless",
     "is_edgeless",
@@ -38,6 +39,8 @@ __all__ = [
 # otherwise.
 SHORT = {"capture_opening": "caught", "reading": "reads"}
 # The figure for which a length stands where the part has no edge; by what share such lengths may differ.
+# Numbers of times, of which one too many would be a promise.
+ROUNDED_DOWN = ("slip_reserve", "safety_reached")
 EDGE, SAME_SHARE = "edge_distance", 1e-9
 
 
@@ -171,6 +174,8 @@ def format_figure_number(figure: Figure, value: float, unit: Unit) -> str:
     decimals = unit.decimals - 1 if figure.key in SHORT else unit.decimals + 1
     if figure.unit == "mm":
         return unit.format_number(value, decimals)
+    if figure.key in ROUNDED_DOWN:
+        return format_rounded_down(value)
     return format_rounded(value / find_unit_size(figure, unit), figure.decimals)
 
 

@@ -60,6 +60,7 @@ from workhold.statics.jaw_clearance import (
 )
 from workhold.statics.jaw_program import CuttingPieces, find_worst_move
 from workhold.statics.patches import PressedPatch, hulls_meet
+from workhold.units import format_times
 
 __all__ = [
     "RULES",
@@ -627,8 +628,8 @@ class JawSearch:
         reached, safety = hold.safety_reached, self.query.safety_factor
         if reached is not None and reached < safety:
             yield (
-                f"closed with {self.query.jaw_force:g} N the jaws hold {self.acting} {reached:.2f} times, and {safety:g} "
-                "times are asked for"
+                f"closed with {self.query.jaw_force:g} N the jaws hold {self.acting} {format_times(reached)}, and "
+                f"{safety:g} times are asked for"
             )
         if hold.above == 0.0:
             yield "nothing of the part stands above the jaws"

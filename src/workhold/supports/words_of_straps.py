@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf
+from math import ceil
 
 import numpy as np
 
@@ -16,13 +16,12 @@ from workhold.statics.program_forces import AskedForce, find_cut_of_move, round_
 from workhold.supports.straps import StrapQuestion
 from workhold.supports.straps_over_supports import contain_point, find_middle
 from workhold.supports.straps_past_tools import keep_clear
-from workhold.units import Unit, format_rounded_down
+from workhold.units import Unit, format_times
 
 __all__ = [
     "describe_missing_places",
     "describe_program_need",
     "describe_program_safety",
-    "format_times",
     "list_remarks",
     "list_steps",
     "list_warnings",
@@ -62,7 +61,7 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
         )
     if found.clamp_needed is not None:
         steps.append(
-            f"Each strap presses with {found.clamp_needed / unit.newtons:.0f} {unit.force} or more at its tip"
+            f"Each strap presses with {ceil(found.clamp_needed / unit.newtons)} {unit.force} or more at its tip"
         )
     if asked.given_force is not None and found.safety_reached is not None:
         steps.append(
@@ -70,15 +69,6 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
             f"{format_times(found.safety_reached)} as hard as given"
         )
     return steps
-
-
-def format_times(times: float) -> str:
-    """Return a number of times as words; a number is rounded down to two decimals.
-
-    >>> format_times(2.349), format_times(inf)
-    ('2.34 times', 'any number of times')
-    """
-    return "any number of times" if times == inf else f"{format_rounded_down(times)} times"
 
 
 def describe_bearing(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit: Unit) -> str:

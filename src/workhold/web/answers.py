@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
+from math import isinf
 from typing import Any
 
 from attrs import asdict, evolve
@@ -19,7 +20,7 @@ from workhold.geometry.segment import Arc, Segment
 from workhold.model.clamps import describe_tightening_order
 from workhold.model.fixture import Fixture
 from workhold.model.fixture_table import FixtureTable, make_fixture_of_row
-from workhold.model.hold_words import write_setup_sentences
+from workhold.model.hold_words import describe_coefficients, write_setup_sentences
 from workhold.model.jaw_hold import HOLD_FIGURES, JawHold
 from workhold.model.moved_setup import find_move_to_middle, find_overhangs, move_fixture_by_holes
 from workhold.model.quality import FIGURES
@@ -33,8 +34,8 @@ from workhold.presenting.data import convert_finite, describe_helps, describe_so
 from workhold.presenting.figure_words import find_edgeless_distance, is_edgeless
 from workhold.presenting.zoomed_picture import draw_zoomable_picture
 from workhold.supports.straps import make_question
-from workhold.supports.words_of_straps import list_remarks, list_steps, list_warnings
-from workhold.units import MILLIMETRE
+from workhold.supports.words_of_straps import describe_assumptions, list_remarks, list_steps, list_warnings
+from workhold.units import MILLIMETRE, format_rounded_down
 
 __all__ = [
     "describe_arrangements",
@@ -214,14 +215,16 @@ def describe_hold(fixture: Fixture) -> dict[str, Any]:
     hold = fixture.hold
     if not isinstance(hold, JawHold):
         return describe_straps(fixture)
-    entry, steps = make_hold_entry(fixture), dict[str, list[str]]()
+    entry, steps = make_hold_entry(fixture), dict[str, Any]()
     if fixture.listed is not None:
         query = fixture.listed.result.query
         steps = {
+            "knows_height": query.part_height is not None,
             "steps": [
                 *list_raw_sentences(fixture, query, MILLIMETRE),
                 *(f"{step}." for step in write_setup_sentences(fixture, query, MILLIMETRE)),
-            ]
+                *([describe_coefficients(query)] if query.is_loaded else []),
+            ],
         }
     names = ("parallels", "parallel_offsets", "stop", "fixed", "moving", "warnings")
     return {
@@ -230,7 +233,18 @@ def describe_hold(fixture: Fixture) -> dict[str, Any]:
         "full_contact": hold.full_contact,
         "unfit": hold.is_unfit,
         "clamp_needed_each": list(hold.clamp_needed_each),
+        "safety_each": list_safeties(hold),
     }
+
+
+def list_safeties(hold: JawHold | StrappedHold) -> list[float | None] | None:
+    """Return how many times the force given holds each load, rounded down to hundredths; None for any number of
+    times, and None in place of the list where no force is given.
+    """
+    times = hold.safety_each[: len(hold.clamp_needed_each)]
+    if not times:
+        return None
+    return [None if isinf(one) else float(format_rounded_down(one)) for one in times]
 
 
 def describe_straps(fixture: Fixture) -> dict[str, Any]:
@@ -247,6 +261,7 @@ def describe_straps(fixture: Fixture) -> dict[str, Any]:
             "steps": [
                 *(f"{step}." for step in list_steps(hold, fixture, asked, MILLIMETRE)),
                 *list_remarks(hold),
+                *([describe_assumptions(asked)] if fixture.listed.result.query.is_loaded else []),
             ],
             "warnings": list_warnings(hold, fixture, asked, MILLIMETRE),
         }
@@ -255,6 +270,7 @@ def describe_straps(fixture: Fixture) -> dict[str, Any]:
         **{name: entry[name] for name in names},
         "unfit": hold.is_unfit,
         "clamp_needed_each": list(hold.clamp_needed_each),
+        "safety_each": list_safeties(hold),
         **words,
     }
 

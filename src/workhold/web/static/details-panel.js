@@ -3,9 +3,10 @@
  */
 import { byId, make, show } from "./dom.js";
 import { forceOf, writtenTurn } from "./pose.js";
+import { loadWords } from "./loads-panel.js";
 import { on, state } from "./state.js";
 import { pressedBy } from "./toolkits.js";
-import { bareForce, bareLength, figureText, forceWord, length, number, shownFigures } from "./units.js";
+import { bareForce, bareLength, figureText, forceText, forceWord, length, number, shownFigures } from "./units.js";
 
 /** @type {any[]} */
 let figures = [];
@@ -48,11 +49,12 @@ function writePegs(row) {
       ),
     ),
   );
+  const lacking = row.hold?.knows_height === false ? " How thick the part is, is not known: type it under 3 for the grip and the forces." : "";
   const settings = settingWords(row).map(capital).join(", ");
   byId("pose-words").textContent =
     `${settings ? `${settings}. ` : ""}${row.order ? `${row.order} ` : ""}Part turned by ${number(writtenTurn(row), 3)}°, its zero at ` +
     `${bareLength(row.x + row.placed[0])}, ${length(row.y + row.placed[1])} from ${row.flush.length || !row.holes.length ? "" : "hole "}${row.origin}. ` + overhangWords(row) +
-    (row.hold?.steps ? [...row.hold.steps, ...(row.hold.straps ? row.hold.warnings : []).map(sentence)].join(" ") : row.hold || loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`);
+    (row.hold?.steps ? [...row.hold.steps, ...(row.hold.straps ? row.hold.warnings : []).map(sentence)].join(" ") : row.hold || loaded ? "" : `Forces are for each newton of ${forceOf(row)}.`) + lacking;
 }
 
 /** Words that begin with a small letter, as a sentence of their own. @param {string} words */
@@ -102,6 +104,21 @@ function writeQuality(row, pinned) {
     lines.push(make("tr", {}, make("th", { scope: "row" }, names.join(" or ")), ...cells));
   }
   byId("quality").replaceChildren(...lines);
+  writeNeeds(row);
+}
+
+/** What each force on the part asks for, and how many times it is held, where friction holds the part. */
+function writeNeeds({ hold }) {
+  const needs = hold?.clamp_needed_each ?? [];
+  const loads = state.loads.length === needs.length ? state.loads : [];
+  show(byId("needs-box"), loads.length > 0);
+  const times = hold?.safety_each ?? null;
+  byId("needs-title").textContent = `${hold?.straps ? "Each strap" : "Jaw force"}${times ? ", and how often yours holds it" : ""}`;
+  byId("needs").replaceChildren(...loads.map((load, place) => {
+    const need = needs[place];
+    const held = times ? ` (${times[place] === null ? "any" : times[place]} times)` : "";
+    return make("tr", {}, make("th", { scope: "row" }, loadWords(load)), make("td.number", {}, need === null ? "no force holds it" : `${forceText(need)}${held}`));
+  }));
 }
 
 /** A figure in a table. */

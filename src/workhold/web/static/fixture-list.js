@@ -176,7 +176,7 @@ export class FixtureList {
     const strong = state.loads.length ? "load_reaction" : "clamp_amplification";
     // Where friction holds the part, only figures that the row has.
     const usual = row.hold
-      ? OF_FRICTION.filter((key) => typeof row.quality?.[key] === "number")
+      ? OF_FRICTION.filter((key) => typeof shownFigures(row)[key] === "number")
       : ["warnings", "location_error", strong, "closure_margin"];
     const rest = usual.map((key) => this.figures.find((figure) => figure.key === key)).filter((f) => f && f !== first[0]);
     return [...first, ...rest].slice(0, 3);

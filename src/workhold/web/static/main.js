@@ -5,6 +5,7 @@ import { ask } from "./api.js";
 import { detailsPanel } from "./details-panel.js";
 import { byId, choice, quiet, show } from "./dom.js";
 import { familiesDialog } from "./families-dialog.js";
+import { loadsPanel } from "./loads-panel.js";
 import { forcesPanel } from "./forces-panel.js";
 import { listenToKeys } from "./keys.js";
 import { keep, restored } from "./link.js";
@@ -93,6 +94,7 @@ async function begin() {
   askOnSheet();
   spaceDialog();
   supportsPanel();
+  loadsPanel();
   setUpsPanel();
   warningsPanel();
   programPanel();

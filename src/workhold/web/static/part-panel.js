@@ -212,7 +212,9 @@ export function usePart(part, { name = "", parts = [], strokes = [], gaps = [], 
   choice("builtin").value = name;
   const others = parts.length > 1 ? parts.filter((each) => each.number !== (chosen ?? 1)) : [];
   drawing.others = { parts: others, strokes: gaps.length ? strokes : [], take: (other) => answered({ part_number: other }), isChosen: chosen !== null };
-  change({ part, avoid: [], ruledOut: {}, zones: [], cut: null, supports: { ...state.supports, below: [], above: [] }, force: null, loads: [], view: "part" });
+  // How thick it is was that of another part.
+  const { thickness: _, ...asked } = state.asked;
+  change({ part, asked, avoid: [], ruledOut: {}, zones: [], cut: null, supports: { ...state.supports, below: [], above: [] }, force: null, loads: [], view: "part" });
 }
 
 /** Offer the parts that come with the program. */

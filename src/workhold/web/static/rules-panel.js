@@ -38,7 +38,7 @@ export function rulesPanel(drawing, showPart) {
   field("every-pair").addEventListener("change", () => change({ listing: field("every-pair").checked ? "all" : null }));
   field("every-fixture").addEventListener("change", () => change({ every: field("every-fixture").checked }));
   on(["toolkit", "listing", "every"], writeListing);
-  on(["loads", "unit"], writeLoads);
+  on(["loads", "unit", "toolkit"], writeLoads);
   on(["view"], () => state.view !== "part" && stopZone());
 }
 
@@ -179,7 +179,8 @@ function readTypes(event) {
 /** Tell which load the search ranks by, and offer to drop it. */
 function writeLoads() {
   const words = byId("load-words");
-  show(words, state.loads.length > 0);
+  // Where friction holds the part they stand in a list of their own.
+  show(words, state.loads.length > 0 && !holdsByFriction());
   words.replaceChildren(
     ...state.loads.map((load) => `Ranked by a load of ${forceText(load.force)} at (${load.points[0].map((v) => length(v, 1)).join(", ")}). `),
     make("button", { type: "button", click: () => change({ loads: [], ranking: null }) }, "Drop the load"),

@@ -4,7 +4,7 @@
  * Settings are what a search depends on; when one of them changes, what was found before is stale.
  */
 
-import { askedOfSearch, holdsByFriction } from "./questions.js";
+import { askedOfSearch, holdsByFriction, takesRawBlock } from "./questions.js";
 
 /** Keys of the state that a search depends on. */
 export const SETTINGS = [
@@ -116,6 +116,19 @@ export function workpieceForm(part, name = part.name) {
   return { name, loops: part.loops, departure: part.departure ?? 0, solid: part.solid ?? null, outlines: part.outlines ?? {} };
 }
 
+/** What is asked where friction holds the part: how thick a drawn one is, and the coefficient of friction. */
+function frictionAsked() {
+  const { asked, part, supports, sheet } = state;
+  const value = asked.friction;
+  return {
+    ...(part?.solid ? {} : { thickness: asked.thickness ?? supports?.thickness ?? sheet?.thickness ?? null }),
+    ...(value === undefined ? {} : { friction: takesRawBlock() ? { jaw: value } : { plate: value, tip: value } }),
+  };
+}
+
+/** The figures to rank by, without one that pegs alone have. */
+const rankingByFriction = () => (state.ranking?.includes("load_reaction") ? null : state.ranking);
+
 /** What the server is asked to search. */
 export function request() {
   return {
@@ -125,11 +138,11 @@ export function request() {
     listing: state.listing,
     ...askedOfSearch(),
     restrictions: { avoid: state.avoid, zones: state.zones, angles: state.angles, ...state.ruledOut },
-    ranking: state.ranking,
+    ranking: holdsByFriction() ? rankingByFriction() : state.ranking,
     prefer: state.ranking ? null : state.prefer,
     tolerance: state.tolerance,
     loads: state.loads,
-    ...(holdsByFriction() && !state.part?.solid ? { thickness: state.supports?.thickness ?? state.sheet?.thickness ?? null } : {}),
+    ...(holdsByFriction() ? frictionAsked() : {}),
     ...(state.program ? { program: programRequest(state.program) } : {}),
   };
 }

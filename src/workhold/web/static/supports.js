@@ -4,6 +4,7 @@
 import { centerOf } from "./forces.js";
 import { loadOf } from "./forces-panel.js";
 import { boundsOf, segmentsOf } from "./geometry.js";
+import { takesRawBlock } from "./questions.js";
 import { state } from "./state.js";
 
 /**
@@ -24,12 +25,13 @@ const BEST = 3;
 
 /** Whether the supports of the fixture are shown. */
 export function areShown({ supports, part } = state) {
-  return supports.open ?? Boolean(part?.solid);
+  // Between flat jaws the part lies on parallels.
+  return !takesRawBlock() && (supports.open ?? Boolean(part?.solid));
 }
 
 /** How thick the part is in mm; null where nobody knows. */
-export function thicknessOf({ part, supports, sheet } = state) {
-  return part?.solid?.height ?? supports.thickness ?? sheet.thickness ?? null;
+export function thicknessOf({ part, asked, supports, sheet } = state) {
+  return part?.solid?.height ?? asked?.thickness ?? supports.thickness ?? sheet.thickness ?? null;
 }
 
 /** The loads on the part: the force that is pushed with and that of a tool downward, and those that the search ranks by. */

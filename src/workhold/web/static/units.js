@@ -110,7 +110,10 @@ export function readNumber(text) {
 
 /** The figures of a fixture; an edge distance that stands for none is null. @param {any} row */
 export function shownFigures(row) {
-  const figures = row.quality ?? row.figures ?? {};
+  const figures = { ...(row.quality ?? row.figures ?? {}) };
+  // Between flat jaws nothing tilts; of a part whose thickness nobody knows no height is known.
+  if (row.hold && !row.hold.straps) delete figures.tilt;
+  if (row.hold?.knows_height === false) for (const key of ["grip", "above", "contact_area", "max_pressure"]) delete figures[key];
   return row.edgeless ? { ...figures, edge_distance: null } : figures;
 }
 
@@ -127,6 +130,8 @@ export function figureText(figure, value) {
   if (figure.unit === "MPa") return stressText(value);
   if (figure.unit === "N") return forceText(value);
   if (figure.unit === "mm²") return state.unit === "inch" ? `${number(value / 25.4 ** 2, 2)} in²` : `${number(value, 0)} mm²`;
+  // More times than there are would be a promise.
+  if (["slip_reserve", "safety_reached"].includes(figure.key)) return number(Math.floor(value * 100 + 1e-6) / 100, 2);
   return number(value, figure.key === "clamp_amplification" ? 2 : figure.decimals);
 }
 
