@@ -20,7 +20,7 @@ from workhold.kernels.curves.roots import (
     MOST_ROOTS,
     STACK_DEPTH,
     STACK_LENGTH,
-    evaluate_at_angle,
+    evaluate_point,
     write_crossings,
 )
 
@@ -103,7 +103,7 @@ def sampled(psis, curve, features, curves, mode):
     out = np.empty((psis.shape[0], 4))
     for k in range(psis.shape[0]):
         psi = psis[k]
-        point = evaluate_at_angle(psi, cos(psi), sin(psi), curve, features, curves, mode)
+        point = evaluate_point(psi, cos(psi), sin(psi), curve, features, curves, mode)
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = point
     return out
 

@@ -34,9 +34,10 @@ from workhold.kernels.curves.roots import (
     MULTIPLE,
     ROOT_PSI,
     ROOT_RADIUS,
-    evaluate_at_angle,
+    evaluate_point,
     write_crossings,
     write_monotone_roots,
+    write_roots_of_span,
 )
 
 
@@ -241,6 +242,7 @@ def test_shared_tails_do_not_depend_on_where_a_circle_has_its_seam():
                     ), f"tail at {s}, psi {psi} is found with one seam only"
 
 
+@pytest.mark.thorough
 def test_a_crossing_at_a_tangency_is_found():
     """Where two branches begin, at a tangency, with exactly the height of another chord, a root is found there."""
     random = Random(44)
@@ -406,13 +408,14 @@ def test_a_root_s_radius_holds_wherever_newtons_method_stops():
     def first_guess(low, high, f_low, f_high, one, two, features, curves, mode, target, start):
         psi = min(max(low + 0.1 * (high - low), low), high) if random.random() < 0.5 else start
         value_one, value_two = (
-            evaluate_at_angle(psi, cos(psi), sin(psi), curve, features, curves, mode)[0]
+            evaluate_point(psi, cos(psi), sin(psi), curve, features, curves, mode).value
             for curve in (one, two)
         )
         return psi, abs(value_two - value_one - target)
 
+    monotone = changed(write_monotone_roots, solve_for_target=first_guess)
     early = changed(
-        write_crossings, write_monotone_roots=changed(write_monotone_roots, solve_for_target=first_guess)
+        write_crossings, write_roots_of_span=changed(write_roots_of_span, write_monotone_roots=monotone)
     )
     for _ in range(60):
         features, table = random_table(random)

@@ -28,6 +28,7 @@ from workhold.kernels.base.tables import (
     Features,
     Lattice,
 )
+from workhold.kernels.chord.evaluation import CurvePoint
 from workhold.kernels.chord.stretches import STRETCH_LENGTH
 from workhold.kernels.contact.record import RECORD_LENGTH
 from workhold.kernels.curves import moving_pegs, roots, sliding_pairs
@@ -44,8 +45,8 @@ def rest_rounded(random: Random, kernel: Kernel) -> float:
     offset, period = random.uniform(-1, 1), random.uniform(1, 2)
     multiple = round((two - one - offset) / period)
     target = offset + multiple * period
-    values = {0: (one, 1.0, 0.0, 0.0), 1: (two, 1.0, 0.0, 0.0)}
-    form = changed(kernel, evaluate_at_angle=lambda _, __, ___, curve, *____: values[curve])
+    values = {0: CurvePoint(one, 1.0, 0.0, 0.0), 1: CurvePoint(two, 1.0, 0.0, 0.0)}
+    form = changed(kernel, evaluate_point=lambda _, __, ___, curve, *____: values[curve])
     _, told = form(0.0, 1.0, target - 1, target + 1, 0, 1, None, None, 0.0, target, 0.5)
     rest = Fraction(abs(two - one - target))
     exact = abs(Fraction(two) - Fraction(one) - Fraction(offset) - multiple * Fraction(period))

@@ -34,6 +34,7 @@ Where these lengths differ by m, the tail on the part itself is off by m / abs(X
 from __future__ import annotations
 
 from math import atan2, cos, hypot, pi, sin, sqrt
+from typing import NamedTuple
 
 from workhold.conventions import EXACT, SAME_CENTER
 from workhold.kernels.base.compiling import Array, inner
@@ -56,8 +57,36 @@ from workhold.kernels.base.interval import (
 )
 from workhold.kernels.base.tables import BRANCH, COINCIDENCE, LENGTH, MIDDLE, SHIFT, SIDE
 
-Motion = tuple[float, float, float, float, float, float]
-MotionBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+
+class Motion(NamedTuple):
+    """The tail of a chord and how it moves when psi turns, near a coincidence.
+
+    Parameters
+    ----------
+    x, y : the tail in mm.
+    speed_x, speed_y : its derivative over psi, in mm per radian.
+    ray_x, ray_y : vector in mm from an arc's centre to the contact on the arc: that of the tail where the
+        tail is on an arc, else that of the head.
+    """
+
+    x: float
+    y: float
+    speed_x: float
+    speed_y: float
+    ray_x: float
+    ray_y: float
+
+
+class MotionBox(NamedTuple):
+    """Intervals that enclose the numbers of a :class:`Motion`."""
+
+    x: Interval
+    y: Interval
+    speed_x: Interval
+    speed_y: Interval
+    ray_x: Interval
+    ray_y: Interval
+
 
 # Nearer than this to a coincidence, in radians, a chord's contacts share one line of action.
 SHARED = 1e-10
@@ -247,16 +276,14 @@ def compute_motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, 
 
     Returns
     -------
-    (whether the regular formulas apply; (ux, uy, u'x, u'y, rx, ry): tail in mm, its derivative in mm per
-        radian, and the vector in mm from the arc's centre to the contact on it, of the tail where that is on
-        an arc). All numbers are 0 where the formulas do not apply.
+    (whether the regular formulas apply; the motion, of which all numbers are 0 where they do not)
     """
     kind, middle, side, d = curve[COINCIDENCE], curve[MIDDLE], curve[SIDE], curve[LENGTH]
     alpha = psi + curve[SHIFT]
     gamma = measure_from_coincidence(alpha, middle)
     radius = get_regular_radius(a, b, kind)
     if not is_regular(kind, radius, d, gamma):
-        return (False, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+        return (False, Motion(0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
     wx, wy = d * cos(alpha), d * sin(alpha)
     way = curve[BRANCH] if gamma >= 0.0 else -curve[BRANCH]
     half_angle = gamma / 2.0
@@ -269,10 +296,10 @@ def compute_motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, 
         rx, ry = (b[X] - a[X] - wx) / 2.0 + y * mx, (b[Y] - a[Y] - wy) / 2.0 + y * my
         vx = wy / 2.0 + dy * mx - y * my / 2.0
         vy = -wx / 2.0 + dy * my + y * mx / 2.0
-        return (True, (a[X] + rx, a[Y] + ry, vx, vy, rx, ry))
+        return (True, Motion(a[X] + rx, a[Y] + ry, vx, vy, rx, ry))
     if kind == TOUCHING:
         rx, ry, rate = compute_touching_tail(a, b, d, side, gamma, wx, wy, way)
-        return (True, (a[X] + rx, a[Y] + ry, -rate * ry, rate * rx, rx, ry))
+        return (True, Motion(a[X] + rx, a[Y] + ry, -rate * ry, rate * rx, rx, ry))
     line, arc = (a, b) if kind == LINE_FIRST else (b, a)
     nx, ny, tx, ty = line[AXIS_Y], -line[AXIS_X], line[AXIS_X], line[AXIS_Y]
     q, dq = d * (1.0 - cos(gamma)), d * sin(gamma)
@@ -283,8 +310,8 @@ def compute_motion(a: Array, b: Array, curve: Array, psi: float) -> tuple[bool, 
     rx, ry = across * nx + along * tx, across * ny + along * ty
     vx, vy = dacross * nx + dalong * tx, dacross * ny + dalong * ty
     if kind == LINE_FIRST:
-        return (True, (arc[X] + rx - wx, arc[Y] + ry - wy, vx + wy, vy - wx, rx, ry))
-    return (True, (arc[X] + rx, arc[Y] + ry, vx, vy, rx, ry))
+        return (True, Motion(arc[X] + rx - wx, arc[Y] + ry - wy, vx + wy, vy - wx, rx, ry))
+    return (True, Motion(arc[X] + rx, arc[Y] + ry, vx, vy, rx, ry))
 
 
 @inner
@@ -352,7 +379,7 @@ def enclose_touching_motion(
     faster = isquare(rate)
     ax = ineg(iadd(imul(drate, ry), imul(faster, rx)))
     ay = isub(imul(drate, rx), imul(faster, ry))
-    return (rx, ry, vx, vy, ax, ay)
+    return MotionBox(rx, ry, vx, vy, ax, ay)
 
 
 @inner
@@ -382,7 +409,7 @@ def enclose_arcs_motion(
     second_derivative = isub(ddy, iscale(0.25, y))
     ax = iadd(iscale(0.5, wx), isub(imul(second_derivative, mx), imul(dy, my)))
     ay = iadd(iscale(0.5, wy), iadd(imul(second_derivative, my), imul(dy, mx)))
-    return (rx, ry, vx, vy, ax, ay)
+    return MotionBox(rx, ry, vx, vy, ax, ay)
 
 
 @inner
@@ -407,7 +434,7 @@ def enclose_line_motion(
     along = iscale(way, imul(sine, g))
     dalong = iscale(way, iadd(iscale(0.5, imul(cosine, g)), imul(sine, dg)))
     ddalong = iscale(way, iadd(iadd(iscale(-0.25, imul(sine, g)), imul(cosine, dg)), imul(sine, ddg)))
-    return (
+    return MotionBox(
         iadd(iscale(nx, across), iscale(tx, along)),
         iadd(iscale(ny, across), iscale(ty, along)),
         iadd(iscale(nx, dacross), iscale(tx, dalong)),
@@ -449,18 +476,23 @@ def enclose_motion(a: Array, b: Array, curve: Array, low: float, high: float) ->
     radius = get_regular_radius(a, b, kind)
     if not (is_regular(kind, radius, d, gamma[0]) and is_regular(kind, radius, d, gamma[1])):
         zero = (0.0, 0.0)
-        return (False, (zero, zero, zero, zero, zero, zero))
+        return (False, MotionBox(zero, zero, zero, zero, zero, zero))
     way = curve[BRANCH] if center >= 0.0 else -curve[BRANCH]
     if kind == LINE_FIRST:
         r = enclose_line_motion(a, radius, d, side, gamma, way)
         alpha = ishift(middle, gamma)
         wx, wy = iscale(d, icos(alpha)), iscale(d, isin(alpha))
-        x, y = isub(ishift(b[X], r[0]), wx), isub(ishift(b[Y], r[1]), wy)
-        return (True, (x, y, iadd(r[2], wy), iadd(r[3], ineg(wx)), iadd(r[4], wx), iadd(r[5], wy)))
+        x, y = isub(ishift(b[X], r.x), wx), isub(ishift(b[Y], r.y), wy)
+        return (
+            True,
+            MotionBox(
+                x, y, iadd(r.speed_x, wy), iadd(r.speed_y, ineg(wx)), iadd(r.ray_x, wx), iadd(r.ray_y, wy)
+            ),
+        )
     if kind == ARCS:
         r = enclose_arcs_motion(a, b, d, middle, gamma, way)
     elif kind == TOUCHING:
         r = enclose_touching_motion(a, b, d, side, middle, gamma, way)
     else:
         r = enclose_line_motion(b, radius, d, side, gamma, way)
-    return (True, (ishift(a[X], r[0]), ishift(a[Y], r[1]), r[2], r[3], r[4], r[5]))
+    return (True, MotionBox(ishift(a[X], r.x), ishift(a[Y], r.y), r.speed_x, r.speed_y, r.ray_x, r.ray_y))

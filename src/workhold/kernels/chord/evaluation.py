@@ -35,6 +35,7 @@ Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical
 from __future__ import annotations
 
 from math import cos, hypot, inf, pi, sin, sqrt
+from typing import NamedTuple
 
 from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import Array, inner
@@ -74,10 +75,45 @@ from workhold.kernels.chord.coincidences import (
     compute_motion,
     find_coincidence,
 )
-from workhold.kernels.chord.shallow import compute_line_to_shallow, compute_shallow_to_arc
+from workhold.kernels.chord.shallow import Chord, compute_line_to_shallow, compute_shallow_to_arc
 
-Chord = tuple[float, float, float, float, float, float]
-State = tuple[float, float, float, float, float, float, float, float, float, float]
+
+class ChordState(NamedTuple):
+    """A chord of a curve at one orientation, with its instant centre and bounds of its errors.
+
+    Parameters
+    ----------
+    x, y : the chord's tail in mm.
+    ax, ay : unit contact direction at the tail: the normal of a line, the direction from an arc's centre.
+    bx, by : the same at the head.
+    center_x, center_y : the instant centre P in mm.
+    error : bound in mm of the error of the tail; inf where nothing is known, too near a tangency.
+    center_error : bound in mm of the error of P, over the chord's own directions; inf likewise.
+    """
+
+    x: float
+    y: float
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    center_x: float
+    center_y: float
+    error: float
+    center_error: float
+
+
+class CurvePoint(NamedTuple):
+    """Value and derivative over psi of a curve at one orientation, and bounds of their errors.
+
+    The errors are inf where nothing is known, too near a tangency.
+    """
+
+    value: float
+    slope: float
+    error: float
+    slope_error: float
+
 
 # Which value of a curve is meant. (For every whole number written as such kernels are compiled anew.)
 HEIGHT = 0.0
@@ -102,7 +138,7 @@ def compute_line_to_arc(a: Array, b: Array, wx: float, wy: float, branch: float)
     across = nx * (a[X] + wx - b[X]) + ny * (a[Y] + wy - b[Y])
     half = sqrt(max((b[RADIUS] - across) * (b[RADIUS] + across), 0.0)) * branch
     rx, ry = across * nx + half * a[AXIS_X], across * ny + half * a[AXIS_Y]
-    return (b[X] + rx - wx, b[Y] + ry - wy, nx, ny, rx / b[RADIUS], ry / b[RADIUS])
+    return Chord(b[X] + rx - wx, b[Y] + ry - wy, nx, ny, rx / b[RADIUS], ry / b[RADIUS])
 
 
 @inner
@@ -133,7 +169,7 @@ def compute_arc_to_arc(
     half = sqrt(max((a[RADIUS] - along) * (a[RADIUS] + along), 0.0)) * branch
     rx, ry = along * dx - half * dy, along * dy + half * dx
     qx, qy = rx - gx, ry - gy
-    return (a[X] + rx, a[Y] + ry, rx / a[RADIUS], ry / a[RADIUS], qx / b[RADIUS], qy / b[RADIUS])
+    return Chord(a[X] + rx, a[Y] + ry, rx / a[RADIUS], ry / a[RADIUS], qx / b[RADIUS], qy / b[RADIUS])
 
 
 @inner
@@ -161,10 +197,10 @@ def compute_chord_along(
             return compute_line_to_arc(a, b, wx, wy, branch)
         nx, ny = b[AXIS_Y], -b[AXIS_X]
         s = (nx * (b[X] - a[X] - wx) + ny * (b[Y] - a[Y] - wy)) / (nx * a[AXIS_X] + ny * a[AXIS_Y])
-        return (a[X] + s * a[AXIS_X], a[Y] + s * a[AXIS_Y], a[AXIS_Y], -a[AXIS_X], nx, ny)
+        return Chord(a[X] + s * a[AXIS_X], a[Y] + s * a[AXIS_Y], a[AXIS_Y], -a[AXIS_X], nx, ny)
     if b[IS_ARC] == 0.0:
         vx, vy, rbx, rby, rax, ray = compute_line_to_arc(b, a, -wx, -wy, branch)
-        return (vx - wx, vy - wy, rax, ray, rbx, rby)
+        return Chord(vx - wx, vy - wy, rax, ray, rbx, rby)
     return compute_arc_to_arc(a, b, wx, wy, branch, one_chord_apart)
 
 
@@ -305,7 +341,9 @@ def write_curve(row: Array, a: Array, b: Array, d: float, branch: float, shift: 
 
 
 @inner
-def compute_chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float) -> State:
+def compute_chord_state(
+    a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float
+) -> ChordState:
     """Return a chord of a curve at an orientation.
 
     See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``. Symbols are
@@ -319,9 +357,7 @@ def compute_chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: fl
 
     Returns
     -------
-    (ux, uy, r_ax, r_ay, r_bx, r_by, Px, Py, bound of the tail's error in mm, bound of the error of P over the
-        chord's own directions in mm). The errors are inf where these formulas do not bound them, too near a
-        tangency
+    ChordState
     """
     d = curve[LENGTH]
     wx = d * (cosine * curve[COSINE] - sine * curve[SINE])
@@ -330,17 +366,19 @@ def compute_chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: fl
     if kind != NONE and kind != CONCENTRIC:
         regular, u = compute_motion(a, b, curve, psi)
         if regular:
-            rax, ray = compute_contact_direction(a, u[0], u[1])
-            rbx, rby = compute_contact_direction(b, u[0] + wx, u[1] + wy)
+            rax, ray = compute_contact_direction(a, u.x, u.y)
+            rbx, rby = compute_contact_direction(b, u.x + wx, u.y + wy)
             error = bound_regular_error(curve) + bound_misfit(a, b, curve, rax * rby - ray * rbx)
             slope_error = error * (1.0 + d * kappa)
-            return (u[0], u[1], rax, ray, rbx, rby, u[0] - u[3], u[1] + u[2], error, slope_error)
+            return ChordState(
+                u.x, u.y, rax, ray, rbx, rby, u.x - u.speed_y, u.y + u.speed_x, error, slope_error
+            )
     c = compute_chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
-    turn = c[2] * c[5] - c[3] * c[4]
+    turn = c.ax * c.by - c.ay * c.bx
     if kind == CONCENTRIC:
         p = -a[RADIUS]
     elif turn != 0.0:
-        p = (wx * c[5] - wy * c[4]) / turn
+        p = (wx * c.by - wy * c.bx) / turn
     else:
         p = 0.0
     eta, square = curve[BACKWARD_ERROR], turn * turn
@@ -349,41 +387,38 @@ def compute_chord_state(a: Array, b: Array, curve: Array, psi: float, cosine: fl
         inverse = 1.0 / abs(turn)
         error = 6.0 * eta * inverse
         slope_error = 8.0 * eta * inverse * inverse * (1.0 + kappa * (d + 2.0 * abs(p)))
-    return (c[0], c[1], c[2], c[3], c[4], c[5], c[0] + p * c[2], c[1] + p * c[3], error, slope_error)
+    return ChordState(c.x, c.y, c.ax, c.ay, c.bx, c.by, c.x + p * c.ax, c.y + p * c.ay, error, slope_error)
 
 
 @inner
 def evaluate_state(
-    a: Array, b: Array, state: State, cosine: float, sine: float, mode: float
-) -> tuple[float, float, float, float]:
-    """Return (value of a computed chord, its derivative over psi, bound of the value's error, bound of the
-    derivative's error).
+    a: Array, b: Array, state: ChordState, cosine: float, sine: float, mode: float
+) -> CurvePoint:
+    """Return the point of a curve that belongs to a computed chord.
 
     ``state`` is that of :func:`compute_chord_state`; see :func:`evaluate_curve` for ``mode`` and units. See
     ``base.feature`` for the layout of ``a`` and ``b``.
     """
-    ux, uy, px, py = state[0], state[1], state[6], state[7]
+    ux, uy, px, py = state.x, state.y, state.center_x, state.center_y
     if mode == HEIGHT:
-        doubt = state[9]
+        doubt = state.center_error
         if a[IS_ARC] + b[IS_ARC] == 1.0:
             # P lies on the line of action through the straight feature, which turns with nothing: of its
             # error along that line only the part along x counts.
-            nx, ny = (state[2], state[3]) if a[IS_ARC] == 0.0 else (state[4], state[5])
+            nx, ny = (state.ax, state.ay) if a[IS_ARC] == 0.0 else (state.bx, state.by)
             share = abs(cosine * nx + sine * ny)
-            doubt = min(doubt, state[8] + share * (doubt + state[8]))
-        return (cosine * uy - sine * ux, -(cosine * px + sine * py), state[8], doubt)
+            doubt = min(doubt, state.error + share * (doubt + state.error))
+        return CurvePoint(cosine * uy - sine * ux, -(cosine * px + sine * py), state.error, doubt)
     s = find_parameter(a, ux, uy)
-    p = (px - ux) * state[2] + (py - uy) * state[3]
+    p = (px - ux) * state.ax + (py - uy) * state.ay
     if a[IS_ARC] == 0.0:
-        return (s, -p, state[8], state[9])
-    return (s, -p / a[RADIUS], state[8] / a[RADIUS] + 1e-15, state[9] / a[RADIUS])
+        return CurvePoint(s, -p, state.error, state.center_error)
+    return CurvePoint(s, -p / a[RADIUS], state.error / a[RADIUS] + 1e-15, state.center_error / a[RADIUS])
 
 
 @inner
-def evaluate_curve(
-    a: Array, b: Array, curve: Array, psi: float, mode: float
-) -> tuple[float, float, float, float]:
-    """Return the value and derivative over psi of a chord curve at psi, with error bounds.
+def evaluate_curve(a: Array, b: Array, curve: Array, psi: float, mode: float) -> CurvePoint:
+    """Return the point of a chord curve at psi.
 
     See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
 
@@ -393,11 +428,6 @@ def evaluate_curve(
     psi : orientation in radians.
     mode : ``HEIGHT`` for the height of the tail along the pegs' y axis in mm, ``POSITION`` for the tail's
         parameter on a (mm on a line, radians on an arc).
-
-    Returns
-    -------
-    (value, derivative, bound of the value's error, bound of the derivative's error), the errors inf where
-        these formulas do not bound them, too near a tangency
     """
     cosine, sine = cos(psi), sin(psi)
     return evaluate_state(a, b, compute_chord_state(a, b, curve, psi, cosine, sine), cosine, sine, mode)

@@ -328,7 +328,7 @@ def has_chord(a: Array, b: Array, d: float, alpha: float, branch: float) -> bool
     if not carriers_meet(a, b, d, alpha):
         return False
     c = compute_chord(a, b, d, alpha, branch)
-    return reaches(a, c[0], c[1]) and reaches(b, c[0] + d * cos(alpha), c[1] + d * sin(alpha))
+    return reaches(a, c.x, c.y) and reaches(b, c.x + d * cos(alpha), c.y + d * sin(alpha))
 
 
 @inner
@@ -353,7 +353,7 @@ def may_branch_exist(
         return False
     # Both are ends: a steady chord cannot come in from a loosened end as far as the true one.
     c = compute_chord(a, b, d, middle, branch)
-    return high > low and abs(c[2] * c[5] - c[3] * c[4]) < STEADY
+    return high > low and abs(c.ax * c.by - c.ay * c.bx) < STEADY
 
 
 @inner

@@ -15,6 +15,7 @@ along n.
 from __future__ import annotations
 
 from math import atan2, cos, hypot, sin
+from typing import NamedTuple
 
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import (
@@ -41,7 +42,23 @@ from workhold.kernels.base.interval import (
     widen_outward,
 )
 
-Chord = tuple[float, float, float, float, float, float]
+
+class Chord(NamedTuple):
+    """A chord from a feature a to a feature b.
+
+    Parameters
+    ----------
+    x, y : its tail in mm.
+    ax, ay : unit contact direction at the tail: the normal of a line, the direction from an arc's centre.
+    bx, by : the same at the head.
+    """
+
+    x: float
+    y: float
+    ax: float
+    ay: float
+    bx: float
+    by: float
 
 
 @inner
@@ -57,7 +74,7 @@ def compute_line_to_shallow(a: Array, b: Array, wx: float, wy: float, branch: fl
     x, y, rx, ry = intersect_near_middle(
         b, nx, ny, compute_exact_dot(a[AXIS_X], a[AXIS_Y], b[AXIS_X], b[AXIS_Y]), off, branch
     )
-    return (mx + x - wx, my + y - wy, nx, ny, rx, ry)
+    return Chord(mx + x - wx, my + y - wy, nx, ny, rx, ry)
 
 
 @inner
@@ -85,7 +102,7 @@ def compute_shallow_to_arc(a: Array, b: Array, wx: float, wy: float, branch: flo
         / gap
     )
     x, y, rx, ry = intersect_near_middle(a, nx, ny, across, off, branch)
-    return (ax + x, ay + y, rx, ry, b[AXIS_X] + (x + qx) / b[RADIUS], b[AXIS_Y] + (y + qy) / b[RADIUS])
+    return Chord(ax + x, ay + y, rx, ry, b[AXIS_X] + (x + qx) / b[RADIUS], b[AXIS_Y] + (y + qy) / b[RADIUS])
 
 
 @inner

@@ -40,6 +40,7 @@ Columns of a stretch:
 from __future__ import annotations
 
 from math import atan2, hypot, inf
+from typing import NamedTuple
 
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, IS_ARC, RADIUS, X, Y, is_shallow
@@ -67,10 +68,41 @@ from workhold.kernels.chord.shallow import enclose_shallow_turn
 
 # Circles with centres nearer than this part of the smaller radius have nearly the same contact directions.
 NEAR = 0.5
-ChordBox = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
-CenterMotion = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 # What is not known.
 ANYTHING = (-inf, inf)
+
+
+class ChordBox(NamedTuple):
+    """Intervals that enclose the numbers of a ``chord.shallow.Chord``."""
+
+    x: Interval
+    y: Interval
+    ax: Interval
+    ay: Interval
+    bx: Interval
+    by: Interval
+
+
+class CenterMotion(NamedTuple):
+    """Intervals that enclose the terms that make up the instant centre's velocity P'.
+
+    Near a coincidence they enclose P' itself; then X is given as 1, and terms that cannot be bounded are
+    (-inf, inf). Symbols are those of ``chord.stretches``.
+
+    Parameters
+    ----------
+    turn : X.
+    x, y : X^3 P'.
+    along : X^3 P' . r_a.
+    part_a, part_b : the parts of X^3 P' along r_a and against r_b.
+    """
+
+    turn: Interval
+    x: Interval
+    y: Interval
+    along: Interval
+    part_a: Interval
+    part_b: Interval
 
 
 @inner
@@ -88,7 +120,7 @@ def enclose_line_to_arc(a: Array, b: Array, wx: Interval, wy: Interval, branch: 
     rx = iadd(iscale(nx, across), iscale(a[AXIS_X], half))
     ry = iadd(iscale(ny, across), iscale(a[AXIS_Y], half))
     ux, uy = isub(ishift(b[X], rx), wx), isub(ishift(b[Y], ry), wy)
-    return (ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[RADIUS], rx), iscale(1.0 / b[RADIUS], ry))
+    return ChordBox(ux, uy, (nx, nx), (ny, ny), iscale(1.0 / b[RADIUS], rx), iscale(1.0 / b[RADIUS], ry))
 
 
 @inner
@@ -119,7 +151,7 @@ def enclose_arc_to_arc(
     rx, ry = isub(imul(along, dx), imul(half, dy)), iadd(imul(along, dy), imul(half, dx))
     one, other = 1.0 / a[RADIUS], 1.0 / b[RADIUS]
     qx, qy = iscale(other, isub(rx, gx)), iscale(other, isub(ry, gy))
-    return (ishift(a[X], rx), ishift(a[Y], ry), iscale(one, rx), iscale(one, ry), qx, qy)
+    return ChordBox(ishift(a[X], rx), ishift(a[Y], ry), iscale(one, rx), iscale(one, ry), qx, qy)
 
 
 @inner
@@ -135,7 +167,7 @@ def enclose_line_to_line(a: Array, b: Array, wx: Interval, wy: Interval) -> Chor
     )
     s = iscale(1.0 / (nx * a[AXIS_X] + ny * a[AXIS_Y]), reach)
     ux, uy = ishift(a[X], iscale(a[AXIS_X], s)), ishift(a[Y], iscale(a[AXIS_Y], s))
-    return (ux, uy, (a[AXIS_Y], a[AXIS_Y]), (-a[AXIS_X], -a[AXIS_X]), (nx, nx), (ny, ny))
+    return ChordBox(ux, uy, (a[AXIS_Y], a[AXIS_Y]), (-a[AXIS_X], -a[AXIS_X]), (nx, nx), (ny, ny))
 
 
 @inner
@@ -152,14 +184,14 @@ def enclose_chord(a: Array, b: Array, curve: Array, wx: Interval, wy: Interval) 
         return enclose_line_to_arc(a, b, wx, wy, branch)
     if b[IS_ARC] == 0.0:
         vx, vy, rbx, rby, rax, ray = enclose_line_to_arc(b, a, ineg(wx), ineg(wy), branch)
-        return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
+        return ChordBox(isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
     if a[RADIUS] <= b[RADIUS]:
         return enclose_arc_to_arc(a, b, wx, wy, branch, curve[COINCIDENCE] == ARCS)
     # Seen from the smaller circle, the contact on the larger one is known better.
     vx, vy, rbx, rby, rax, ray = enclose_arc_to_arc(
         b, a, ineg(wx), ineg(wy), -branch, curve[COINCIDENCE] == ARCS
     )
-    return (isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
+    return ChordBox(isub(vx, wx), isub(vy, wy), rax, ray, rbx, rby)
 
 
 @inner
@@ -239,7 +271,7 @@ def enclose_center_motion_of_arcs(
     along, beside = iscale(unequal, product), iscale(rho * inverse, product)
     nx = iscale(inverse, iadd(imul(along, rx), iadd(imul(beside, gx), imul(last, hx))))
     ny = iscale(inverse, iadd(imul(along, ry), iadd(imul(beside, gy), imul(last, hy))))
-    return (turn, nx, ny, idot(nx, ny, rx, ry), ANYTHING, ANYTHING)
+    return CenterMotion(turn, nx, ny, idot(nx, ny, rx, ry), ANYTHING, ANYTHING)
 
 
 @inner
@@ -260,18 +292,19 @@ def enclose_center_motion(
 
     Returns
     -------
-    Intervals (X, x and y of X^3 P', X^3 P' . r_a, part of X^3 P' along r_a, part against r_b). Near a
-        coincidence P' itself is enclosed, X is given as 1, and terms that cannot be bounded are (-inf, inf)
+    CenterMotion
     """
     unit, zero = (1.0, 1.0), (0.0, 0.0)
     if curve[COINCIDENCE] == CONCENTRIC:
         # The instant centre is the common centre.
-        return (unit, zero, zero, zero, zero, zero)
+        return CenterMotion(unit, zero, zero, zero, zero, zero)
     if curve[COINCIDENCE] != NONE:
         regular, u = enclose_motion(a, b, curve, low, high)
         if regular:
             # P = u + J u', J the quarter turn.
-            return (unit, isub(u[2], u[5]), iadd(u[3], u[4]), ANYTHING, ANYTHING, ANYTHING)
+            return CenterMotion(
+                unit, isub(u.speed_x, u.ray_y), iadd(u.speed_y, u.ray_x), ANYTHING, ANYTHING, ANYTHING
+            )
     d = curve[LENGTH]
     wx, wy = iscale(d, icos((low, high))), iscale(d, isin((low, high)))
     box = enclose_chord(a, b, curve, wx, wy)
@@ -288,7 +321,7 @@ def enclose_center_motion(
     part_b = imul(cross_b, iadd(turn, iscale(compute_curvature(a), cross_b)))
     nx, ny = isub(imul(part_a, rax), imul(part_b, rbx)), isub(imul(part_a, ray), imul(part_b, rby))
     along = isub(part_a, imul(part_b, idot(rax, ray, rbx, rby)))
-    return (turn, nx, ny, along, part_a, part_b)
+    return CenterMotion(turn, nx, ny, along, part_a, part_b)
 
 
 STRETCH_HIGH, SPEED, X_LOW, X_HIGH, Y_LOW, Y_HIGH, ALONG_LOW, ALONG_HIGH = range(8)
@@ -391,7 +424,7 @@ def add_stretches(out: Array, count: int, a: Array, b: Array, curve: Array, stac
     """
     low, high = curve[FROM], curve[TO]
     c = compute_chord(a, b, curve[LENGTH], (low + high) / 2.0, curve[BRANCH])
-    sign = 1.0 if c[2] * c[5] - c[3] * c[4] > 0.0 else -1.0
+    sign = 1.0 if c.ax * c.by - c.ay * c.bx > 0.0 else -1.0
     depth = 0
     left, right = low, high
     while True:

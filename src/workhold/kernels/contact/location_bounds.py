@@ -208,8 +208,8 @@ def is_two_and_two_beyond(
         wrenches[k, 0], wrenches[k, 1] = normals[k, 0], normals[k, 1]
         wrenches[k, 2] = (points[k, 0] * normals[k, 1] - points[k, 1] * normals[k, 0]) / length
     a, b, c, d = still, still + 1, 2 - still, 3 - still
-    one = normals[c, 0] * angle[1] + normals[c, 1] * angle[2]
-    two = normals[d, 0] * angle[1] + normals[d, 1] * angle[2]
+    one = normals[c, 0] * angle.cosine + normals[c, 1] * angle.sine
+    two = normals[d, 0] * angle.cosine + normals[d, 1] * angle.sine
     for n in range(3):
         wrenches[c, n] = two * wrenches[c, n] - one * wrenches[d, n]
     cross_rows(wrenches[b], wrenches[c], moves[a])
@@ -219,7 +219,7 @@ def is_two_and_two_beyond(
     for n in range(3):
         moves[d, n] = -one * moves[c, n]
         moves[c, n] = two * moves[c, n]
-    return is_beyond(moves, features, 4, size, band, angle[0], precision)
+    return is_beyond(moves, features, 4, size, band, angle.psi, precision)
 
 
 @inner

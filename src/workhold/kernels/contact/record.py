@@ -40,6 +40,7 @@ Work space: ``w`` (19, 4), a row of four numbers, one for each peg where nothing
 from __future__ import annotations
 
 from math import cos, hypot, sin
+from typing import NamedTuple
 
 import numpy as np
 
@@ -57,8 +58,14 @@ from workhold.kernels.base.feature import (
 )
 from workhold.kernels.base.tables import COLUMN_STEP, CURVE, HEAD, HIGH, LOW, ROW_STEP, TAIL, Lattice
 
-# An orientation psi in radians, its cosine and its sine.
-Angle = tuple[float, float, float]
+
+class Angle(NamedTuple):
+    """An orientation psi in radians, with its cosine and its sine."""
+
+    psi: float
+    cosine: float
+    sine: float
+
 
 PEG_X, PEG_Y, PEG_FEATURE, PEG_COLUMN, PEG_ROW, PEG_RADIUS = range(6)
 PEG_LENGTH = 6
@@ -73,8 +80,8 @@ RECORD_LENGTH = 19
 
 @inner
 def make_angle(psi: float) -> Angle:
-    """Return (psi, cos psi, sin psi) for an orientation psi in radians."""
-    return (psi, cos(psi), sin(psi))
+    """Return an orientation psi, in radians, with its cosine and its sine."""
+    return Angle(psi, cos(psi), sin(psi))
 
 
 @inner

@@ -201,7 +201,9 @@ def place_tail(
     """
     step = curves.integers[curve]
     tail, head = step[TAIL], step[HEAD]
-    x, y, radius = compute_tail(features[tail], features[head], curves.reals[curve], *angle, reach)
+    x, y, radius = compute_tail(
+        features[tail], features[head], curves.reals[curve], angle.psi, angle.cosine, angle.sine, reach
+    )
     place_peg(pegs[0], x, y, tail, 0.0, line, radius)
 
 
@@ -213,7 +215,7 @@ def place_head(pegs: Array, place: int, curve: int, angle: Angle, reach: float, 
     See ``contact.record`` for the layout of ``pegs``.
     """
     step, reals = curves.integers[curve], curves.reals[curve]
-    d, alpha = reals[LENGTH], angle[0] + reals[SHIFT]
+    d, alpha = reals[LENGTH], angle.psi + reals[SHIFT]
     x, y = pegs[0, PEG_X] + d * cos(alpha), pegs[0, PEG_Y] + d * sin(alpha)
     radius = pegs[0, PEG_RADIUS] + d * reach
     line = pegs[0, PEG_ROW] + float(step[ROW_STEP])
@@ -318,7 +320,7 @@ def add_listed(
         return count
     if count == out.shape[0]:
         return NO_ROOM_FOR_RECORDS
-    write_record(out[count], standing, pegs, angle[0], separation, reach)
+    write_record(out[count], standing, pegs, angle.psi, separation, reach)
     return count + 1
 
 
@@ -335,7 +337,7 @@ def add_seat(out: Array, count: int, angle: Angle, reach: float, work: BlockWork
     if count == out.shape[0]:
         return NO_ROOM_FOR_RECORDS
     place_peg(pegs[3], pegs[0, PEG_X], pegs[0, PEG_Y], int(pegs[0, PEG_FEATURE]), 0.0, 0.0, 0.0)
-    write_record(out[count], 3.0, pegs, angle[0], 0.0, reach)
+    write_record(out[count], 3.0, pegs, angle.psi, 0.0, reach)
     return count + 1
 
 

@@ -305,7 +305,7 @@ def are_locators_beyond(angle: Angle, work: BlockWork) -> bool:
     numbers = work.null
     for k in range(3):
         numbers[k] = work.pegs[k, PEG_FEATURE]
-    return is_beyond(triple[:3], numbers, 3, triple[4, 0], band, angle[0], work.features.precision)
+    return is_beyond(triple[:3], numbers, 3, triple[4, 0], band, angle.psi, work.features.precision)
 
 
 @inner

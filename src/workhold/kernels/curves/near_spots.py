@@ -25,10 +25,7 @@ from workhold.kernels.base.tables import (
 )
 from workhold.kernels.chord.evaluation import find_parameter
 from workhold.kernels.contact.location_bounds import write_spot
-from workhold.kernels.curves.piece_bounds import enclose_tail
-
-# A disc that holds a contact: its middle and its radius in mm.
-Disc = tuple[float, float, float]
+from workhold.kernels.curves.piece_bounds import Disc, enclose_tail
 
 # Rounding of distances in mm, generously counted.
 ROUNDING = 1e-9
@@ -67,7 +64,7 @@ def write_piece_spots(
     """Write the contacts of a piece's tail and head as spots to ``tail_spot`` and ``head_spot``; return their
     discs.
 
-    The first returned disc (x, y, radius), in mm, holds the tail over the whole piece, the second holds the
+    The first returned disc holds the tail over the whole piece, the second holds the
     head. The first five columns of a spot are written, see ``contact.location_bounds.write_spot``. ``length``
     is L in mm, by which moments are divided. See ``base.tables`` for the layout of ``piece``.
     """
@@ -80,7 +77,7 @@ def write_piece_spots(
     at_x, at_y, off = x + d * cos(alpha), y + d * sin(alpha), radius + d * half
     write_spot(a, tail, x, y, radius, given, length, tail_spot)
     write_spot(b, head, at_x, at_y, off, given, length, head_spot)
-    return (x, y, radius), (at_x, at_y, off)
+    return Disc(x, y, radius), Disc(at_x, at_y, off)
 
 
 @inner
@@ -96,10 +93,10 @@ def may_join(
     ``near``.
 
     The tail touches the feature ``a``, whose number is ``ends[0]``, the head ``b``, whose number is
-    ``ends[1]``. Discs are (x, y, radius) in mm. See ``base.feature`` for the layout of ``a`` and ``b``.
+    ``ends[1]``. See ``base.feature`` for the layout of ``a`` and ``b``.
     """
-    first, end = find_spots(a, ends[0], near, tail[0], tail[1], tail[2])
-    begin, last = find_spots(b, ends[1], near, head[0], head[1], head[2])
+    first, end = find_spots(a, ends[0], near, tail.x, tail.y, tail.radius)
+    begin, last = find_spots(b, ends[1], near, head.x, head.y, head.radius)
     return is_any_joined(near, first, end, begin, last)
 
 

@@ -30,6 +30,7 @@ angle at a rate of at most 1.
 from __future__ import annotations
 
 from math import cos, hypot, inf, isfinite, nan, sin, sqrt
+from typing import NamedTuple
 
 from workhold.conventions import EXACT
 from workhold.kernels.base.compiling import Array, inner
@@ -74,7 +75,7 @@ from workhold.kernels.chord.coincidences import (
 )
 from workhold.kernels.chord.evaluation import (
     HEIGHT,
-    State,
+    ChordState,
     bound_regular_error,
     compute_chord_state,
     evaluate_state,
@@ -83,8 +84,16 @@ from workhold.kernels.chord.evaluation import (
 from workhold.kernels.chord.shallow import compute_shallow_half_chord
 
 
+class Disc(NamedTuple):
+    """A disc that holds a contact: its middle and its radius, in mm."""
+
+    x: float
+    y: float
+    radius: float
+
+
 @inner
-def bound_tail_error(curve: Array, state: State, reach: float) -> float:
+def bound_tail_error(curve: Array, state: ChordState, reach: float) -> float:
     """Return how far in mm the exact tail may be from the computed
     one ``state`` if psi may be ``reach`` radians off.
 
@@ -96,7 +105,7 @@ def bound_tail_error(curve: Array, state: State, reach: float) -> float:
     """
     eta, d = curve[BACKWARD_ERROR], curve[LENGTH]
     kappa = curve[KAPPA]
-    turn = abs(state[2] * state[5] - state[3] * state[4])
+    turn = abs(state.ax * state.by - state.ay * state.bx)
     square = turn * turn
     if square < 16.0 * kappa * eta or square < 16.0 * d * kappa * reach or turn == 0.0:
         return inf
@@ -115,7 +124,7 @@ def bound_root_error(square: float, doubt: float) -> float:
 
 
 @inner
-def bound_arc_tail_error(a: Array, b: Array, state: State, e: float, eta: float) -> float:
+def bound_arc_tail_error(a: Array, b: Array, state: ChordState, e: float, eta: float) -> float:
     """Return how far in mm a chord's tail on arc ``a`` may be from the computed tail, with the head on arc
     ``b``.
 
@@ -123,7 +132,7 @@ def bound_arc_tail_error(a: Array, b: Array, state: State, e: float, eta: float)
     against the tail; the computed contacts are off their arcs by up to ``eta`` mm. See ``base.feature`` for
     the layout of ``a`` and ``b``. Symbols are those of ``chord.evaluation``.
     """
-    gap = hypot(a[RADIUS] * state[2] - b[RADIUS] * state[4], a[RADIUS] * state[3] - b[RADIUS] * state[5])
+    gap = hypot(a[RADIUS] * state.ax - b[RADIUS] * state.bx, a[RADIUS] * state.ay - b[RADIUS] * state.by)
     if gap <= 2.0 * e:
         return 2.2 * a[RADIUS]
     difference = abs(a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS])
@@ -131,7 +140,7 @@ def bound_arc_tail_error(a: Array, b: Array, state: State, e: float, eta: float)
     along = (gap + (a[RADIUS] - b[RADIUS]) * (a[RADIUS] + b[RADIUS]) / gap) / 2.0
     square = (a[RADIUS] - along) * (a[RADIUS] + along)
     if is_shallow(a) or is_shallow(b):
-        square = compute_shallow_half_chord(a, b, state[2] * state[5] - state[3] * state[4], gap) ** 2
+        square = compute_shallow_half_chord(a, b, state.ax * state.by - state.ay * state.bx, gap) ** 2
     return (
         shift
         + eta
@@ -141,7 +150,7 @@ def bound_arc_tail_error(a: Array, b: Array, state: State, e: float, eta: float)
 
 
 @inner
-def bound_disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float, reach: float) -> float:
+def bound_disc_radius(a: Array, b: Array, curve: Array, state: ChordState, psi: float, reach: float) -> float:
     """Return how far in mm the tails of a curve within ``reach``
     radians of psi may be from the computed one at psi.
 
@@ -164,38 +173,38 @@ def bound_disc_radius(a: Array, b: Array, curve: Array, state: State, psi: float
         e += EXACT
         eta += bound_regular_error(curve)
     if a[IS_ARC] == 0.0 and b[IS_ARC] == 0.0:
-        return 1.1 * e / abs(state[2] * state[5] - state[3] * state[4])
+        return 1.1 * e / abs(state.ax * state.by - state.ay * state.bx)
     if a[IS_ARC] == 0.0:
-        half = b[RADIUS] * (a[AXIS_X] * state[4] + a[AXIS_Y] * state[5])
+        half = b[RADIUS] * (a[AXIS_X] * state.bx + a[AXIS_Y] * state.by)
         return 2.0 * e + eta + 1.01 * bound_root_error(half * half, e * (2.0 * b[RADIUS] + e))
     if b[IS_ARC] == 0.0:
-        half = a[RADIUS] * (b[AXIS_X] * state[2] + b[AXIS_Y] * state[3])
+        half = a[RADIUS] * (b[AXIS_X] * state.ax + b[AXIS_Y] * state.ay)
         return 2.0 * e + eta + 1.01 * bound_root_error(half * half, e * (2.0 * a[RADIUS] + e))
     if is_shallow(a) and a[RADIUS] > b[RADIUS]:
         # Seen from the smaller circle, the contact on the larger one is known better.
-        seen = (0.0, 0.0, state[4], state[5], state[2], state[3], 0.0, 0.0, 0.0, 0.0)
+        seen = ChordState(0.0, 0.0, state.bx, state.by, state.ax, state.ay, 0.0, 0.0, 0.0, 0.0)
         return e + bound_arc_tail_error(b, a, seen, e, eta)
     return bound_arc_tail_error(a, b, state, e, eta)
 
 
 @inner
-def enclose_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> tuple[float, float, float]:
-    """Return a disc (x, y, radius) in mm that holds the tails of a
+def enclose_tail(a: Array, b: Array, curve: Array, psi: float, reach: float) -> Disc:
+    """Return a disc that holds the tails of a
     curve for all orientations within ``reach`` of psi.
 
     ``a`` and ``b`` are the features of tail and head, ``curve`` the reals (16,) of the curve; angles are in
     radians. See ``base.feature`` for the layout of ``a`` and ``b``, ``base.tables`` for that of ``curve``.
     """
     state = compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))
-    return (state[0], state[1], bound_disc_radius(a, b, curve, state, psi, reach + 1e-15))
+    return Disc(state.x, state.y, bound_disc_radius(a, b, curve, state, psi, reach + 1e-15))
 
 
 @inner
 def compute_tail(
     a: Array, b: Array, curve: Array, psi: float, cosine: float, sine: float, reach: float
-) -> tuple[float, float, float]:
-    """Return (x, y, radius) in mm of a chord's tail: the computed
-    centre, and how far the exact one may be from it.
+) -> Disc:
+    """Return the disc of a chord's tail: the computed
+    tail, and how far the exact one may be from it.
 
     The orientation psi, given with its cosine and sine, is off by up to ``reach`` radians. As only tails on
     their feature matter, the radius is cut to about the feature's size. See ``base.feature`` for the layout
@@ -206,16 +215,16 @@ def compute_tail(
     coincides = curve[COINCIDENCE] != NONE
     if coincides:
         radius += bound_regular_error(curve) + bound_misfit(
-            a, b, curve, state[2] * state[5] - state[3] * state[4]
+            a, b, curve, state.ax * state.by - state.ay * state.bx
         )
     if coincides or not isfinite(radius):
         radius = min(radius, bound_disc_radius(a, b, curve, state, psi, reach + 1e-15))
     # A tail that counts is on its feature.
     if a[IS_ARC] != 0.0:
-        return (state[0], state[1], min(radius, 2.2 * a[RADIUS]))
+        return Disc(state.x, state.y, min(radius, 2.2 * a[RADIUS]))
     if radius <= 2.2 * a[HALF_EXTENT]:
-        return (state[0], state[1], radius)
-    return (a[X], a[Y], 1.1 * a[HALF_EXTENT])
+        return Disc(state.x, state.y, radius)
+    return Disc(a[X], a[Y], 1.1 * a[HALF_EXTENT])
 
 
 @inner
@@ -269,19 +278,19 @@ def write_edge(
     edge[EDGE_VALUE], edge[EDGE_SLOPE], edge[EDGE_VALUE_ERROR], edge[EDGE_SLOPE_ERROR] = evaluate_state(
         a, b, state, cosine, sine, mode
     )
-    edge[EDGE_X] = cosine * state[0] + sine * state[1]
-    px, py, ax, ay = state[6], state[7], state[6] - state[0], state[7] - state[1]
+    edge[EDGE_X] = cosine * state.x + sine * state.y
+    px, py, ax, ay = state.center_x, state.center_y, state.center_x - state.x, state.center_y - state.y
     edge[EDGE_CENTER] = sqrt(px * px + py * py)
     edge[EDGE_ARM] = sqrt(ax * ax + ay * ay) + curve[LENGTH]
-    edge[EDGE_ERROR] = state[8]
+    edge[EDGE_ERROR] = state.error
     edge[EDGE_ACROSS] = cosine * py - sine * px
-    edge[EDGE_CENTER_ERROR] = state[9]
+    edge[EDGE_CENTER_ERROR] = state.center_error
     side_a = 1.0 if a[IS_ARC] == 0.0 else a[SIGN]
     side_b = 1.0 if b[IS_ARC] == 0.0 else b[SIGN]
-    edge[TAIL_NORMAL_X] = side_a * (cosine * state[2] + sine * state[3])
-    edge[TAIL_NORMAL_Y] = side_a * (cosine * state[3] - sine * state[2])
-    edge[HEAD_NORMAL_X] = side_b * (cosine * state[4] + sine * state[5])
-    edge[HEAD_NORMAL_Y] = side_b * (cosine * state[5] - sine * state[4])
+    edge[TAIL_NORMAL_X] = side_a * (cosine * state.ax + sine * state.ay)
+    edge[TAIL_NORMAL_Y] = side_a * (cosine * state.ay - sine * state.ax)
+    edge[HEAD_NORMAL_X] = side_b * (cosine * state.bx + sine * state.by)
+    edge[HEAD_NORMAL_Y] = side_b * (cosine * state.by - sine * state.bx)
 
 
 @inner

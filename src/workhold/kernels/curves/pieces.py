@@ -212,7 +212,7 @@ def unwind_positions(row: Array, a: Array, b: Array, curve: Array) -> None:
     width = row[HIGH] - row[LOW]
     for k in range(2):
         psi = row[LOW] + width / 64.0 if k == 0 else row[HIGH] - width / 64.0
-        middle = evaluate_curve(a, b, curve, psi, POSITION)[0]
+        middle = evaluate_curve(a, b, curve, psi, POSITION).value
         column = VALUE_LOW if k == 0 else VALUE_HIGH
         row[column] = unwrap_angle(row[column], middle)
 

@@ -42,7 +42,7 @@ from workhold.kernels.base.tables import (
     VALUE_LOW,
     Curves,
 )
-from workhold.kernels.chord.evaluation import compute_chord_state, evaluate_state
+from workhold.kernels.chord.evaluation import CurvePoint, compute_chord_state, evaluate_state
 from workhold.kernels.curves.piece_bounds import SAME, enclose_value
 
 # Ranges narrower than this, in radians, are not split any further: at a double root the clamping force is
@@ -70,10 +70,10 @@ ROUNDINGS = 4.0 * 1.2e-16
 
 
 @inner
-def evaluate_at_angle(
+def evaluate_point(
     psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
-) -> tuple[float, float, float, float]:
-    """Return (value, slope, bound of the value's error, bound of the slope's error) of a curve at psi.
+) -> CurvePoint:
+    """Return the point of a curve at psi, also where its value must be enclosed by itself.
 
     ``curve`` is the curve's index in ``curves``; psi is in radians, ``cosine`` and ``sine`` are given to be
     computed once for two curves. ``mode`` and units are those of ``evaluate_curve``. The bound of the slope's
@@ -81,11 +81,11 @@ def evaluate_at_angle(
     """
     a, b = features[curves.integers[curve, TAIL]], features[curves.integers[curve, HEAD]]
     row = curves.reals[curve]
-    state = compute_chord_state(a, b, row, psi, cosine, sine)
-    value, slope, error, spread = evaluate_state(a, b, state, cosine, sine, mode)
-    if not isfinite(error):
+    point = evaluate_state(a, b, compute_chord_state(a, b, row, psi, cosine, sine), cosine, sine, mode)
+    if not isfinite(point.error):
         value, error = enclose_value(a, b, row, psi, SAME, mode)
-    return value, slope, error, spread
+        return CurvePoint(value, point.slope, error, point.slope_error)
+    return point
 
 
 @inner
@@ -151,10 +151,12 @@ def solve_for_target(
         if not low < psi < high:
             psi = (low + high) / 2.0
         cosine, sine = cos(psi), sin(psi)
-        value_one, slope_one, error_one, _ = evaluate_at_angle(psi, cosine, sine, one, features, curves, mode)
-        value_two, slope_two, error_two, _ = evaluate_at_angle(psi, cosine, sine, two, features, curves, mode)
-        rest = value_two - value_one - target
-        error = error_one + error_two + ROUNDINGS * (abs(value_one) + abs(value_two) + abs(target))
+        at_one = evaluate_point(psi, cosine, sine, one, features, curves, mode)
+        at_two = evaluate_point(psi, cosine, sine, two, features, curves, mode)
+        rest = at_two.value - at_one.value - target
+        error = (
+            at_one.error + at_two.error + ROUNDINGS * (abs(at_one.value) + abs(at_two.value) + abs(target))
+        )
         # Nothing is gained where rounding is the larger part of what is left.
         if abs(rest) <= 0.05 * error:
             break
@@ -162,7 +164,7 @@ def solve_for_target(
             high = psi
         else:
             low = psi
-        step = rest / (slope_two - slope_one) if slope_two != slope_one else np.inf
+        step = rest / (at_two.slope - at_one.slope) if at_two.slope != at_one.slope else np.inf
         if abs(step) <= 2e-16 * max(1.0, abs(psi)) or high - low <= 4e-16 * max(1.0, abs(psi)):
             break
         if not abs(step) < before / 2.0:
@@ -235,15 +237,6 @@ def may_meet(first: Array, second: Array, offset: float, period: float) -> bool:
     return k <= last
 
 
-class CurvePoint(NamedTuple):
-    """Value and slope of a curve at one orientation, and bounds of their errors."""
-
-    value: float
-    slope: float
-    error: float
-    slope_error: float
-
-
 class Span(NamedTuple):
     """Range of orientations in radians, and both curves (one, two) at both ends (low, high)."""
 
@@ -307,15 +300,6 @@ def read_span(row: Array) -> Span:
     return Span(
         row[0], row[1], read_point(row, 2), read_point(row, 6), read_point(row, 10), read_point(row, 14)
     )
-
-
-@inner
-def evaluate_point(
-    psi: float, cosine: float, sine: float, curve: int, features: Array, curves: Curves, mode: float
-) -> CurvePoint:
-    """Return the curve with the index ``curve`` at psi, see :func:`evaluate_at_angle`."""
-    value, slope, error, slope_error = evaluate_at_angle(psi, cosine, sine, curve, features, curves, mode)
-    return CurvePoint(value, slope, error, slope_error)
 
 
 @inner
@@ -506,6 +490,67 @@ def find_split_point(span: Span) -> float:
 
 
 @inner
+def make_first_span(low: float, high: float, asked: Crossing) -> Span:
+    """Return the span over the whole common range [low, high] of two pieces."""
+    return Span(
+        low,
+        high,
+        make_point_of_piece(low, asked.first, True, asked),
+        make_point_of_piece(low, asked.second, True, asked),
+        make_point_of_piece(high, asked.first, False, asked),
+        make_point_of_piece(high, asked.second, False, asked),
+    )
+
+
+@inner
+def bound_rounding(span: Span, offset: float) -> float:
+    """Return a bound of the rounding of the values of f, and of their differences from targets, over a span."""
+    low = abs(span.one_low.value) + abs(span.two_low.value)
+    return ROUNDINGS * (low + abs(span.one_high.value) + abs(span.two_high.value) + abs(offset))
+
+
+@inner
+def write_roots_of_span(
+    span: Span,
+    rounding: float,
+    splits: int,
+    can_split: bool,
+    flat: float,
+    asked: Crossing,
+    roots: Array,
+    found: int,
+) -> tuple[int, bool]:
+    """Write the roots of a span, or find that it must be split.
+
+    ``found`` roots are written to ``roots`` already, after ``splits`` splits. Return (the new number of
+    roots, or -1 when they do not fit; whether the span must be split).
+
+    Parameters
+    ----------
+    rounding : bound of the rounding of f, see :func:`bound_rounding`.
+    can_split : whether there is room for another span. Without it a span of unknown bounds gives -1.
+    flat : see :func:`write_crossings`.
+    """
+    slopes = bound_slopes(span, asked.first, asked.second)
+    lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
+    if not max(-lowest, highest) > flat:
+        return found, False
+    error = max(span.one_low.error + span.two_low.error, span.one_high.error + span.two_high.error) + rounding
+    if lowest > 0.0 or highest < 0.0:
+        return write_monotone_roots(span, slopes, error, asked, roots, found), False
+    bottom, top, smallest = bound_span(span, slopes, error, splits, asked)
+    if not (isfinite(bottom) and isfinite(top)):
+        return (found, True) if can_split else (-1, False)
+    k, last = find_targets(bottom, top, asked.offset, asked.period)
+    if last < k:
+        return found, False
+    is_narrow = span.high - span.low <= smallest or is_vague(span, slopes, error)
+    if is_narrow or splits >= MOST_SPLITS or not can_split:
+        return write_wide_roots(span, k, last, roots, found), False
+    return found, True
+
+
+@inner
 def write_crossings(
     first: Array,
     second: Array,
@@ -543,62 +588,25 @@ def write_crossings(
     asked = Crossing(
         first, second, int(first[CURVE]), int(second[CURVE]), features, curves, mode, offset, period
     )
-    span = Span(
-        low,
-        high,
-        make_point_of_piece(low, first, True, asked),
-        make_point_of_piece(low, second, True, asked),
-        make_point_of_piece(high, first, False, asked),
-        make_point_of_piece(high, second, False, asked),
-    )
-    rounding = ROUNDINGS * (
-        abs(span.one_low.value)
-        + abs(span.two_low.value)
-        + abs(span.one_high.value)
-        + abs(span.two_high.value)
-        + abs(offset)
-    )
+    span = make_first_span(low, high, asked)
+    rounding = bound_rounding(span, offset)
     found = depth = splits = int(np.int64(0))
     while True:
-        slopes = bound_slopes(span, first, second)
-        lowest, highest = slopes.two_low - slopes.one_high, slopes.two_high - slopes.one_low
-        error = (
-            max(span.one_low.error + span.two_low.error, span.one_high.error + span.two_high.error) + rounding
-        )
-        done = True
-        if max(-lowest, highest) > flat:
-            if lowest > 0.0 or highest < 0.0:
-                found = write_monotone_roots(span, slopes, error, asked, roots, found)
-            else:
-                bottom, top, smallest = bound_span(span, slopes, error, splits, asked)
-                is_full = depth >= stack.shape[0]
-                done = False
-                if isfinite(bottom) and isfinite(top):
-                    k, last = find_targets(bottom, top, offset, period)
-                    done = last < k
-                    if not done and (
-                        span.high - span.low <= smallest
-                        or is_vague(span, slopes, error)
-                        or splits >= MOST_SPLITS
-                        or is_full
-                    ):
-                        found = write_wide_roots(span, k, last, roots, found)
-                        done = True
-                elif is_full:
-                    return -1
-            if found < 0:
-                return -1
-        if done:
-            if depth == 0:
-                return found
+        can_split = depth < stack.shape[0]
+        found, must_split = write_roots_of_span(span, rounding, splits, can_split, flat, asked, roots, found)
+        if found < 0:
+            return -1
+        if must_split:
+            splits += 1
+            middle = find_split_point(span)
+            cosine, sine = cos(middle), sin(middle)
+            one = evaluate_point(middle, cosine, sine, asked.one, features, curves, mode)
+            two = evaluate_point(middle, cosine, sine, asked.two, features, curves, mode)
+            write_span(stack[depth], Span(middle, span.high, one, two, span.one_high, span.two_high))
+            depth += 1
+            span = Span(span.low, middle, span.one_low, span.two_low, one, two)
+        elif depth > 0:
             depth -= 1
             span = read_span(stack[depth])
-            continue
-        splits += 1
-        middle = find_split_point(span)
-        cosine, sine = cos(middle), sin(middle)
-        one = evaluate_point(middle, cosine, sine, asked.one, features, curves, mode)
-        two = evaluate_point(middle, cosine, sine, asked.two, features, curves, mode)
-        write_span(stack[depth], Span(middle, span.high, one, two, span.one_high, span.two_high))
-        depth += 1
-        span = Span(span.low, middle, span.one_low, span.two_low, one, two)
+        else:
+            return found

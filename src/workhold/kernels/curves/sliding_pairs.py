@@ -286,7 +286,7 @@ def add_curve_fixtures(
     whole, real = sliding_pairs.integers[pair.number], sliding_pairs.reals[pair.number]
     features, curves, lattice = work.features, work.curves, work.lattice
     reach, pegs = pair.reach, work.pegs
-    ax, ay, pitch_y = -pair.angle[2], pair.angle[1], lattice.pitch_y
+    ax, ay, pitch_y = -pair.angle.sine, pair.angle.cosine, lattice.pitch_y
     row = features.loose[whole[TAIL]]
     lowest, highest = find_height_range(row, ax, ay)
     tail = curves.integers[curve, TAIL]
@@ -457,7 +457,7 @@ def add_fixtures_of_pair(
         where no curve is to be ruled out by spots.
     """
     stats, curves = work.stats, work.curves
-    psi, whole = pair.angle[0], sliding_pairs.integers[pair.number]
+    psi, whole = pair.angle.psi, sliding_pairs.integers[pair.number]
     near, asks_spots = work.features.near, spots.shape[0] > 0
     first, end = int(np.int64(0)), members.shape[0]
     if standing == 3:
@@ -515,7 +515,7 @@ def write_sliding_fixtures(
     if asks_spots:
         for k in range(chosen.shape[0]):
             pair = place_pair(chosen[k], sliding_pairs, features.loose)
-            least, most = min(least, pair.angle[0] - pair.reach), max(most, pair.angle[0] + pair.reach)
+            least, most = min(least, pair.angle.psi - pair.reach), max(most, pair.angle.psi + pair.reach)
         write_member_spots(members, (least + most) / 2.0, (most - least) / 2.0, features, curves, spots)
     for k in range(chosen.shape[0]):
         number = chosen[k]

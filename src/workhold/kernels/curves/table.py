@@ -55,7 +55,7 @@ from workhold.kernels.chord.intervals import (
 )
 from workhold.kernels.chord.stretches import DEPTH, STRETCH_LENGTH, add_stretches
 from workhold.kernels.curves.near_spots import may_join
-from workhold.kernels.curves.piece_bounds import enclose_tail
+from workhold.kernels.curves.piece_bounds import Disc, enclose_tail
 from workhold.kernels.curves.sliding_pairs import MOST_SLIDES, write_sliding_pairs
 
 # Rounding of distances in mm, generously counted.
@@ -124,9 +124,9 @@ def write_near_range(a: Array, b: Array, ends: tuple[int, int], near: NearSpots,
     first, last = RANGE_PARTS, -1
     for k in range(RANGE_PARTS):
         middle, half = low + (k + 0.5) * size, 0.5 * size + slack + SLIVER
-        x, y, radius = enclose_tail(a, b, curve, middle, half)
-        head = (x + d * cos(middle), y + d * sin(middle), radius + d * half)
-        if may_join(a, b, ends, near, (x, y, radius), head):
+        tail = enclose_tail(a, b, curve, middle, half)
+        head = Disc(tail.x + d * cos(middle), tail.y + d * sin(middle), tail.radius + d * half)
+        if may_join(a, b, ends, near, tail, head):
             first, last = min(first, k), k
     if last < 0:
         return False
@@ -154,8 +154,8 @@ def trim_sliding_range(
     half = 0.5 * size * (1.0 if a[IS_ARC] == 0.0 else a[RADIUS]) + ROUNDING
     for k in range(RANGE_PARTS):
         x, y = compute_point(a, low + (k + 0.5) * size)
-        head = (x + d * cos(pair[DIRECTION]), y + d * sin(pair[DIRECTION]), half)
-        if may_join(a, b, ends, near, (x, y, half), head):
+        head = Disc(x + d * cos(pair[DIRECTION]), y + d * sin(pair[DIRECTION]), half)
+        if may_join(a, b, ends, near, Disc(x, y, half), head):
             first, last = min(first, k), k
     if last < 0:
         return False

@@ -135,8 +135,8 @@ def write_spots(limb: Array, piece: Array, features: Features, curves: Curves, l
     there, ahead = write_piece_spots(
         piece, limb[LIMB_TAIL_SPOT:LIMB_HEAD_SPOT], limb[LIMB_HEAD_SPOT:], features, curves, length
     )
-    first, end = find_spots(features.loose[tail], tail, near, there[0], there[1], there[2])
-    begin, last = find_spots(features.loose[head], head, near, ahead[0], ahead[1], ahead[2])
+    first, end = find_spots(features.loose[tail], tail, near, there.x, there.y, there.radius)
+    begin, last = find_spots(features.loose[head], head, near, ahead.x, ahead.y, ahead.radius)
     limb[LIMB_TAIL_FIRST], limb[LIMB_TAIL_END] = first, end
     limb[LIMB_HEAD_FIRST], limb[LIMB_HEAD_END] = begin, last
     return is_any_joined(near, first, end, begin, last)

@@ -133,8 +133,8 @@ def write_role_spots(roles: Array, pieces: Array, work: BlockWork) -> None:
         number = int(piece[CURVE])
         tail_spot, head_spot = role[ROLE_TAIL_SPOT:ROLE_HEAD_SPOT], role[ROLE_HEAD_SPOT:]
         tail, head = write_piece_spots(piece, tail_spot, head_spot, work.features, curves, length)
-        role[ROLE_TAIL_SWING] = bound_normal_swing(loose[curves.integers[number, TAIL]], tail[2])
-        role[ROLE_HEAD_SWING] = bound_normal_swing(loose[curves.integers[number, HEAD]], head[2])
+        role[ROLE_TAIL_SWING] = bound_normal_swing(loose[curves.integers[number, TAIL]], tail.radius)
+        role[ROLE_HEAD_SWING] = bound_normal_swing(loose[curves.integers[number, HEAD]], head.radius)
 
 
 @inner

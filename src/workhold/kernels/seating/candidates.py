@@ -38,7 +38,7 @@ from workhold.kernels.seating.columns import (
     HeldPart,
 )
 from workhold.kernels.seating.obstacles import (
-    Foot,
+    FootPoint,
     compute_normal,
     find_foot,
     is_on_piece,
@@ -104,7 +104,7 @@ def compute_slope_of_miss(
     piece: Array,
     side: float,
     s: PairState,
-    f: Foot,
+    f: FootPoint,
     cosine: float,
     sine: float,
     psi: float,
@@ -121,7 +121,7 @@ def compute_slope_of_miss(
     if pair[KIND] == 0.0:
         k, alpha = int(pair[SOURCE]), psi + pair[ANGLE]
         a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
-        sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+        sign = 1.0 if s.ax * s.by - s.ay * s.bx >= 0.0 else -1.0
         motion = enclose_center_velocity(a, b, given.reals[k], alpha, alpha, sign)
     slope, doubt = compute_slope_range(piece, side, cosine, sine, s, f, motion, 0.0, 0.0)
     return slope if doubt < inf else inf
@@ -145,28 +145,28 @@ def complete_three(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out
         pair, piece = given.pairs[int(root[ROOT_PAIR])], given.rows[int(root[ROOT_PIECE])]
         third, psi, tail = int(root[ROOT_PEG]), root[ROOT_PSI], int(pair[FIRST_PEG])
         s = compute_pair_state(pair, given, psi)
-        f = find_foot(piece, s[6], s[7], root[ROOT_SIDE])
-        if not (is_on_piece(piece, f[0], f[1], END) and is_on_its_pieces(pair, given, psi, s[0], s[1])):
+        f = find_foot(piece, s.center_x, s.center_y, root[ROOT_SIDE])
+        if not (is_on_piece(piece, f.x, f.y, END) and is_on_its_pieces(pair, given, psi, s.x, s.y)):
             continue
         cosine, sine = cos(psi), sin(psi)
-        x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
-        y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
+        x = given.pegs[tail, 0] - (cosine * s.x + sine * s.y)
+        y = given.pegs[tail, 1] - (cosine * s.y - sine * s.x)
         row = out[count]
         write_pose(row, -psi, x, y, 3)
         write_pair(row, 0, pair, given, pocket_pieces)
         row[PEG + 2], row[PIECE + 2], row[DOUBT] = third, root[ROOT_PIECE], root[ROOT_DOUBT]
-        place_third(row, cosine * f[0] + sine * f[1], third, given)
+        place_third(row, cosine * f.x + sine * f.y, third, given)
         slope = compute_slope_of_miss(pair, piece, root[ROOT_SIDE], s, f, cosine, sine, psi, given)
         if not abs(slope) < inf:
             slope, row[DOUBT] = 0.0, 1.0
         bend = 0.0 if piece[IS_ARC] == 0.0 else piece[SIGN] / piece[RADIUS]
-        level = max(abs(f[2] * cosine + f[3] * sine), 1e-9)
-        second = -slope * (1.0 + bend * ((s[6] - f[0]) * f[2] + (s[7] - f[1]) * f[3]))
+        level = max(abs(f.normal_x * cosine + f.normal_y * sine), 1e-9)
+        second = -slope * (1.0 + bend * ((s.center_x - f.x) * f.normal_x + (s.center_y - f.y) * f.normal_y))
         row[SECOND] = (second if given.right[third] == 1 else -second) / (level * level)
         # The part turns about the instant centre.
         row[MOTION] = 1.0
-        row[MOTION + 1] = cosine * s[7] - sine * s[6]
-        row[MOTION + 2] = -(cosine * s[6] + sine * s[7])
+        row[MOTION + 1] = cosine * s.center_y - sine * s.center_x
+        row[MOTION + 2] = -(cosine * s.center_x + sine * s.center_y)
         count += 1
     return count
 
@@ -200,17 +200,15 @@ def complete_two(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out: 
         psi = roots[r, ROOT_PSI]
         one, two = given.pairs[int(roots[r, ROOT_PAIR])], given.pairs[int(roots[r, ROOT_PIECE])]
         s, t = compute_pair_state(one, given, psi), compute_pair_state(two, given, psi)
-        if not (
-            is_on_its_pieces(one, given, psi, s[0], s[1]) and is_on_its_pieces(two, given, psi, t[0], t[1])
-        ):
+        if not (is_on_its_pieces(one, given, psi, s.x, s.y) and is_on_its_pieces(two, given, psi, t.x, t.y)):
             continue
         cosine, sine = cos(psi), sin(psi)
         p, q = int(one[FIRST_PEG]), int(two[FIRST_PEG])
-        x = given.pegs[p, 0] - (cosine * s[0] + sine * s[1])
-        y = given.pegs[p, 1] - (cosine * s[1] - sine * s[0])
+        x = given.pegs[p, 0] - (cosine * s.x + sine * s.y)
+        y = given.pegs[p, 1] - (cosine * s.y - sine * s.x)
         row = out[count]
         write_pose(row, -psi, x, y, 4)
-        row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t[0] + sine * t[1]))
+        row[SEPARATION] = x - (given.pegs[q, 0] - (cosine * t.x + sine * t.y))
         write_pair(row, 0, one, given, pocket_pieces)
         write_pair(row, 2, two, given, pocket_pieces)
         row[DOUBT] = roots[r, ROOT_DOUBT]
@@ -290,12 +288,12 @@ def complete_third(roots: Matrix, given: HeldPart, pocket_pieces: IntMatrix, out
         cosine, sine = cos(psi), sin(psi)
         ox, oy = given.pegs[third, 0] - given.pegs[tail, 0], given.pegs[third, 1] - given.pegs[tail, 1]
         if not (
-            is_on_its_pieces(pair, given, psi, s[0], s[1])
-            and is_on_piece(piece, s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy, END)
+            is_on_its_pieces(pair, given, psi, s.x, s.y)
+            and is_on_piece(piece, s.x + cosine * ox - sine * oy, s.y + sine * ox + cosine * oy, END)
         ):
             continue
-        x = given.pegs[tail, 0] - (cosine * s[0] + sine * s[1])
-        y = given.pegs[tail, 1] - (cosine * s[1] - sine * s[0])
+        x = given.pegs[tail, 0] - (cosine * s.x + sine * s.y)
+        y = given.pegs[tail, 1] - (cosine * s.y - sine * s.x)
         row = out[count]
         write_pose(row, -psi, x, y, 3)
         write_pair(row, 0, pair, given, pocket_pieces)

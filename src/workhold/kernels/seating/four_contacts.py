@@ -71,13 +71,13 @@ def judge_two_cells(p: Array, q: Array, low: float, high: float, given: HeldPart
     psi, reach = (low + high) / 2.0, (high - low) / 2.0
     s, t = compute_pair_state(one, given, psi), compute_pair_state(two, given, psi)
     cosine, sine = cos(psi), sin(psi)
-    f = compute_pair_height(two, given, t[0], t[1], cosine, sine) - compute_pair_height(
-        one, given, s[0], s[1], cosine, sine
+    f = compute_pair_height(two, given, t.x, t.y, cosine, sine) - compute_pair_height(
+        one, given, s.x, s.y, cosine, sine
     )
-    gx, gy, speed = t[6] - s[6], t[7] - s[7], p[SPEED] + q[SPEED]
+    gx, gy, speed = t.center_x - s.center_x, t.center_y - s.center_y, p[SPEED] + q[SPEED]
     apart = compute_length(gx, gy)
     # Two pegs cannot be in one place, and pairs that turn about one centre are loose throughout.
-    if (compute_length(t[0] - s[0], t[1] - s[1]) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
+    if (compute_length(t.x - s.x, t.y - s.y) < SAME and abs(f) < SAME) or (apart < SAME and speed == 0.0):
         return NOTHING
     slope, bend = abs(cosine * gx + sine * gy), apart + speed * (1.0 + reach)
     if abs(f) > reach * (slope + bend * reach / 2.0 * 1.001) + ROUNDING:
@@ -106,7 +106,7 @@ def compute_peg_place(s: PairState, cosine: float, sine: float, ox: float, oy: f
     """Return the place (x, y) on the part of a peg that is (ox, oy)
     mm from the pair's first peg in the vise frame.
     """
-    return (s[0] + cosine * ox - sine * oy, s[1] + sine * ox + cosine * oy)
+    return (s.x + cosine * ox - sine * oy, s.y + sine * ox + cosine * oy)
 
 
 @inner
@@ -117,7 +117,7 @@ def judge_place(cell: Array, s: PairState, x: float, y: float, piece: Array, rea
     part is (x, y). See :func:`judge_two_cells` for the verdicts, ``seating.columns`` for the layout of
     ``cell``, ``base.feature`` for that of ``piece``.
     """
-    gx, gy = x - s[6], y - s[7]
+    gx, gy = x - s.center_x, y - s.center_y
     speed = (compute_length(gx, gy) + cell[SPEED] * reach) * (1.0 + 2.0 * reach)
     bend = speed + cell[SPEED]
     dx, dy = x - piece[X], y - piece[Y]
@@ -128,7 +128,7 @@ def judge_place(cell: Array, s: PairState, x: float, y: float, piece: Array, rea
     else:
         size = max(compute_length(dx, dy), 1e-150)
         f, nx, ny = piece[SIGN] * (size - piece[RADIUS]), piece[SIGN] * dx / size, piece[SIGN] * dy / size
-        if cell[SPEED] == 0.0 and compute_length(s[6] - piece[X], s[7] - piece[Y]) < SAME:
+        if cell[SPEED] == 0.0 and compute_length(s.center_x - piece[X], s.center_y - piece[Y]) < SAME:
             return NOTHING
         least = size - speed * reach
         bend += speed * speed / least if least > 0.0 else inf
@@ -305,7 +305,9 @@ def write_third_of_jaw(
                 low = compute_peg_place(at_low, cos(cell[LOW]), sin(cell[LOW]), ox, oy)
                 high = compute_peg_place(at_high, cos(cell[HIGH]), sin(cell[HIGH]), ox, oy)
             play = (
-                (compute_length(x - s[6], y - s[7]) + cell[SPEED] * reach) * (1.0 + 2.0 * reach) * reach
+                (compute_length(x - s.center_x, y - s.center_y) + cell[SPEED] * reach)
+                * (1.0 + 2.0 * reach)
+                * reach
                 + END
                 + ROUNDING
             )

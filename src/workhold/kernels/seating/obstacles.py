@@ -10,6 +10,7 @@ its outline.
 from __future__ import annotations
 
 from math import atan2, cos, hypot, inf, pi, sin, sqrt
+from typing import NamedTuple
 
 from workhold.conventions import PARALLEL, SAME_CENTER
 from workhold.kernels.base.compiling import (
@@ -26,7 +27,23 @@ from workhold.kernels.seating.columns import Obstacles
 
 # mm. Two pieces are as near when their distances agree to this: they end in one point.
 SAME_END = 1e-9
-Foot = tuple[float, float, float, float, float]
+
+
+class FootPoint(NamedTuple):
+    """The foot of the perpendicular from a point to a piece's line or circle.
+
+    Parameters
+    ----------
+    x, y : its place in mm.
+    normal_x, normal_y : unit outward normal of the piece there.
+    distance : of the point from the circle's centre, in mm; inf for a line.
+    """
+
+    x: float
+    y: float
+    normal_x: float
+    normal_y: float
+    distance: float
 
 
 @inner
@@ -113,24 +130,21 @@ def compute_normal(row: Array, x: float, y: float) -> tuple[float, float]:
 
 
 @inner
-def find_foot(row: Array, x: float, y: float, side: float) -> Foot:
+def find_foot(row: Array, x: float, y: float, side: float) -> FootPoint:
     """Return the foot of the perpendicular from a point to a piece's line or circle.
 
     On a circle there are two: with ``side`` 1 the foot lies on the point's side of the centre, with -1 on the
     opposite side; on a line ``side`` is ignored. See ``base.feature`` for the layout of ``row``.
-
-    Returns
-    -------
-    (x and y of the foot in mm, x and y of the outward normal there, distance in mm of the point from the
-        circle's centre or inf for a line)
     """
     dx, dy = x - row[X], y - row[Y]
     if row[IS_ARC] == 0.0:
         s = dx * row[AXIS_X] + dy * row[AXIS_Y]
-        return (row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], row[AXIS_Y], -row[AXIS_X], inf)
+        return FootPoint(row[X] + s * row[AXIS_X], row[Y] + s * row[AXIS_Y], row[AXIS_Y], -row[AXIS_X], inf)
     size = max(compute_length(dx, dy), 1e-150)
     ex, ey = side * dx / size, side * dy / size
-    return (row[X] + row[RADIUS] * ex, row[Y] + row[RADIUS] * ey, row[SIGN] * ex, row[SIGN] * ey, size)
+    return FootPoint(
+        row[X] + row[RADIUS] * ex, row[Y] + row[RADIUS] * ey, row[SIGN] * ex, row[SIGN] * ey, size
+    )
 
 
 @inner

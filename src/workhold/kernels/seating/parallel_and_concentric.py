@@ -293,9 +293,9 @@ def add_about_one_center(
     arc, other, piece = given.rows[a], given.rows[c], given.rows[f]
     cx, cy = arc[X], arc[Y]
     touched = find_foot(piece, cx, cy, side)
-    ex, ey = touched[0] - cx, touched[1] - cy
+    ex, ey = touched.x - cx, touched.y - cy
     far = compute_length(ex, ey)
-    if far < NEAREST or not is_on_piece(piece, touched[0], touched[1], END):
+    if far < NEAREST or not is_on_piece(piece, touched.x, touched.y, END):
         return at
     dx, dy = given.pegs[b, 0] - given.pegs[p, 0], given.pegs[b, 1] - given.pegs[p, 1]
     d = compute_length(dx, dy)
@@ -306,7 +306,7 @@ def add_about_one_center(
     moving = 1.0 if given.right[q] == 1 else -1.0
     # How fast b's piece goes away from the centre as the part turns: of a line as far as it is, of an arc m /
     # radius times that, with a centre m away, or where the foot is on the far side minus that.
-    bend = far if piece[IS_ARC] == 0.0 else side * touched[4] / piece[RADIUS] * far
+    bend = far if piece[IS_ARC] == 0.0 else side * touched.distance / piece[RADIUS] * far
     for way in range(4):
         off = (1.0 - 2.0 * (way % 2)) * sqrt(square)
         # The centre, at separation 0 of the jaw of p and b, and the two pegs from it.

@@ -264,10 +264,10 @@ def write_held_slides(
             pair = given.pairs[int(cell[PAIR]) + jaw.before]
             exact = turn_into_range(pair, given, psi)
             there = compute_pair_state(pair, given, exact)
-            if not is_on_its_pieces(pair, given, exact, there[0], there[1]):
+            if not is_on_its_pieces(pair, given, exact, there.x, there.y):
                 continue
             level = (
-                compute_pair_height(pair, given, there[0], there[1], cos(exact), sin(exact))
+                compute_pair_height(pair, given, there.x, there.y, cos(exact), sin(exact))
                 + given.pegs[first, 1]
             )
             ts = find_track_crossings(row, middle, -s, c, level)
@@ -279,7 +279,7 @@ def write_held_slides(
                     return -1
                 one = out[count]
                 begin_candidate(one, slide, *compute_first_peg_place(row, middle, t), 4, given)
-                place_third(one, c * there[0] + s * there[1], int(pair[FIRST_PEG]), given)
+                place_third(one, c * there.x + s * there.y, int(pair[FIRST_PEG]), given)
                 write_pair(one, 2, pair, given, pocket_pieces)
                 count += 1
     return count

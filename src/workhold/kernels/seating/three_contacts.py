@@ -37,7 +37,7 @@ from workhold.kernels.seating.columns import (
     HeldPart,
 )
 from workhold.kernels.seating.obstacles import (
-    Foot,
+    FootPoint,
     compute_angle_from_middle,
     compute_length,
     find_foot,
@@ -80,9 +80,9 @@ def may_balance(s: PairState, nx: float, ny: float, ray: Ray, turn: float) -> bo
     (nx, ny) is the third normal in the middle of the range; it turns by at most ``turn`` radians over the
     range, the other two by at most what the ray states.
     """
-    sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
-    first, second = sign * (ny * s[4] - nx * s[5]), sign * (s[3] * nx - s[2] * ny)
-    return first >= -(turn + ray[6]) - 1e-9 and second >= -(turn + ray[5]) - 1e-9
+    sign = 1.0 if s.ax * s.by - s.ay * s.bx >= 0.0 else -1.0
+    first, second = sign * (ny * s.bx - nx * s.by), sign * (s.ay * nx - s.ax * ny)
+    return first >= -(turn + ray.turn_b) - 1e-9 and second >= -(turn + ray.turn_a) - 1e-9
 
 
 @inner
@@ -105,9 +105,9 @@ def write_point_heights(
     xs, ys, radii, heights, slacks = discs[0], discs[1], discs[2], off[0], off[1]
     most = speed * (1.0 + reach)
     for k in range(xs.shape[0]):
-        gx, gy = xs[k] - s[6], ys[k] - s[7]
+        gx, gy = xs[k] - s.center_x, ys[k] - s.center_y
         bend = reach * reach / 2.0 * (abs(gx) + abs(gy) + most)
-        heights[k] = cosine * (ys[k] - s[1]) - sine * (xs[k] - s[0])
+        heights[k] = cosine * (ys[k] - s.y) - sine * (xs[k] - s.x)
         slacks[k] = radii[k] + bend + END + ROUNDING + reach * abs(cosine * gx + sine * gy)
 
 
@@ -135,10 +135,10 @@ def is_behind(
     beyond : place of the third peg along x from the first at the stop, in mm.
     push : 1 where the third peg is of the right jaw, -1 where it is of the left one.
     """
-    gx, gy = disc[0] - s[6], disc[1] - s[7]
+    gx, gy = disc[0] - s.center_x, disc[1] - s.center_y
     bend = reach * reach / 2.0 * (abs(gx) + abs(gy) + speed * (1.0 + reach))
     slack = disc[2] + bend + END + ROUNDING + reach * abs(cosine * gy - sine * gx)
-    return push * (cosine * (disc[0] - s[0]) + sine * (disc[1] - s[1]) - beyond) < -slack
+    return push * (cosine * (disc[0] - s.x) + sine * (disc[1] - s.y) - beyond) < -slack
 
 
 @inner
@@ -149,7 +149,7 @@ def judge_by_foot(
     cosine: float,
     sine: float,
     s: PairState,
-    f: Foot,
+    f: FootPoint,
     speed: float,
     reach: float,
 ) -> int:
@@ -168,35 +168,45 @@ def judge_by_foot(
     """
     move, turn = speed * reach, 0.0
     if piece[IS_ARC] != 0.0:
-        if f[4] <= move * 1.0001 + ROUNDING:
+        if f.distance <= move * 1.0001 + ROUNDING:
             return HALVES
-        turn = asin(move / f[4])
-    if push * (f[2] * cosine + f[3] * sine) < -(turn + reach):
+        turn = asin(move / f.distance)
+    if push * (f.normal_x * cosine + f.normal_y * sine) < -(turn + reach):
         return NOTHING
-    way = speed if piece[IS_ARC] == 0.0 else piece[RADIUS] * speed / (f[4] - move)
-    if abs(missed) > (compute_length(s[6] - f[0], s[7] - f[1]) + move + way) * reach + ROUNDING:
+    way = speed if piece[IS_ARC] == 0.0 else piece[RADIUS] * speed / (f.distance - move)
+    if abs(missed) > (compute_length(s.center_x - f.x, s.center_y - f.y) + move + way) * reach + ROUNDING:
         return NOTHING
     if piece[IS_ARC] == 0.0:
-        at = (f[0] - piece[X]) * piece[AXIS_X] + (f[1] - piece[Y]) * piece[AXIS_Y]
+        at = (f.x - piece[X]) * piece[AXIS_X] + (f.y - piece[Y]) * piece[AXIS_Y]
         return NOTHING if abs(at) > piece[HALF_EXTENT] + move + END else MAYBE
     beyond = piece[HALF_EXTENT] + turn + END / piece[RADIUS]
     is_off = (
-        beyond < pi and abs(compute_angle_from_middle(piece, piece[SIGN] * f[2], piece[SIGN] * f[3])) > beyond
+        beyond < pi
+        and abs(compute_angle_from_middle(piece, piece[SIGN] * f.normal_x, piece[SIGN] * f.normal_y)) > beyond
     )
     return NOTHING if is_off else MAYBE
 
 
 @inner
 def may_decide(
-    piece: Array, missed: float, cosine: float, sine: float, s: PairState, f: Foot, speed: float, reach: float
+    piece: Array,
+    missed: float,
+    cosine: float,
+    sine: float,
+    s: PairState,
+    f: FootPoint,
+    speed: float,
+    reach: float,
 ) -> bool:
     """Return whether :func:`compute_slope_range` may show that a range has at most one root, or none.
 
     If False, that function need not be called: its doubt is too large even where P' is taken as 0. See
     ``base.feature`` for the layout of ``piece``. Symbols are those of ``seating.two_contact_curves``.
     """
-    move, gx, gy = speed * reach, s[6] - f[0], s[7] - f[1]
-    turn, ratio = (0.0, 1.0) if piece[IS_ARC] == 0.0 else (asin(move / f[4]), piece[RADIUS] / f[4])
+    move, gx, gy = speed * reach, s.center_x - f.x, s.center_y - f.y
+    turn, ratio = (
+        (0.0, 1.0) if piece[IS_ARC] == 0.0 else (asin(move / f.distance), piece[RADIUS] / f.distance)
+    )
     doubt = move + (compute_length(gx, gy) + move) * (turn + reach)
     return abs(cosine * gx + sine * gy) + ratio * speed > doubt or abs(missed) > doubt * reach
 
@@ -208,7 +218,7 @@ def compute_slope_range(
     cosine: float,
     sine: float,
     s: PairState,
-    f: Foot,
+    f: FootPoint,
     motion: tuple[Interval, Interval],
     speed: float,
     reach: float,
@@ -230,17 +240,17 @@ def compute_slope_range(
         compute_length(qx[1] - qx[0], qy[1] - qy[0]) / 2.0,
     )
     move, size = speed * reach, min(compute_length(mx, my) + spread, speed)
-    gx, gy = s[6] - f[0], s[7] - f[1]
+    gx, gy = s.center_x - f.x, s.center_y - f.y
     far = compute_length(gx, gy) + move
     slope = cosine * gx + sine * gy
     if piece[IS_ARC] == 0.0:
-        tx, ty = -f[3], f[2]
+        tx, ty = -f.normal_y, f.normal_x
         slope += (mx * tx + my * ty) * (cosine * ty - sine * tx)
         return (slope, (move + reach * (far + size) + spread) * (1.0 + 1e-6) + ROUNDING)
     # foot' is the part of P' across the way from the centre, in proportion; the way turns by up to ``turn``.
-    turn = asin(move / f[4])
-    ex, ey = (f[0] - piece[X]) / piece[RADIUS], (f[1] - piece[Y]) / piece[RADIUS]
-    ratio, worst = piece[RADIUS] / f[4], piece[RADIUS] / (f[4] - move)
+    turn = asin(move / f.distance)
+    ex, ey = (f.x - piece[X]) / piece[RADIUS], (f.y - piece[Y]) / piece[RADIUS]
+    ratio, worst = piece[RADIUS] / f.distance, piece[RADIUS] / (f.distance - move)
     slope += side * ratio * (my * ex - mx * ey) * (cosine * ex + sine * ey)
     doubt = (
         move + far * (turn + reach) + worst * (spread + size * (2.0 * turn + reach)) + size * (worst - ratio)
@@ -259,8 +269,8 @@ def enclose_center_velocity(
     those of ``seating.two_contact_curves``.
     """
     motion = enclose_center_motion(a, b, reals, low, high, sign * a[SIGN] * b[SIGN])
-    cube = imul(motion[0], imul(motion[0], motion[0]))
-    return (idivide(motion[1], cube), idivide(motion[2], cube))
+    cube = imul(motion.turn, imul(motion.turn, motion.turn))
+    return (idivide(motion.x, cube), idivide(motion.y, cube))
 
 
 @inner
@@ -301,18 +311,18 @@ def write_roots_of_cell(
             ray = make_ray_over(pair, given, s, speed, reach)
         if is_foot_off(piece, side, push, above, cosine, sine, s, ray, reach):
             continue
-        f = find_foot(piece, s[6], s[7], side)
-        missed = cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - above
+        f = find_foot(piece, s.center_x, s.center_y, side)
+        missed = cosine * (f.y - s.y) - sine * (f.x - s.x) - above
         verdict = judge_by_foot(piece, push, missed, cosine, sine, s, f, speed, reach)
         if verdict == NOTHING:
             continue
         if verdict == MAYBE:
-            turn = 0.0 if piece[IS_ARC] == 0.0 else asin(speed * reach / f[4])
-            if not may_balance(s, f[2], f[3], ray, turn):
+            turn = 0.0 if piece[IS_ARC] == 0.0 else asin(speed * reach / f.distance)
+            if not may_balance(s, f.normal_x, f.normal_y, ray, turn):
                 continue
             slope, doubt = 0.0, inf
             if may_decide(piece, missed, cosine, sine, s, f, speed, reach):
-                sign = 1.0 if s[2] * s[5] - s[3] * s[4] >= 0.0 else -1.0
+                sign = 1.0 if s.ax * s.by - s.ay * s.bx >= 0.0 else -1.0
                 motion = enclose_center_velocity(
                     a, b, given.reals[k], low + pair[ANGLE], high + pair[ANGLE], sign
                 )

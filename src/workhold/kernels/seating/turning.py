@@ -24,6 +24,7 @@ R. E. Moore, R. B. Kearfott, M. J. Cloud, *Introduction to Interval Analysis*, S
 from __future__ import annotations
 
 from math import asin, atan2, floor, hypot, pi
+from typing import NamedTuple
 
 from workhold.kernels.base.compiling import Array, inner
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, SIGN, X, Y
@@ -118,9 +119,30 @@ SHAPE_LENGTH = 11
 # line press with a million times the force along it, and are none.
 END, SQUARE = 1e-9, 1e-6
 NOTHING = (0.0, 0.0)
-# Whether there may be a contact; whether the whole line or circle has one throughout; B, B', B'' and tan nu.
-Contact = tuple[bool, bool, Interval, Interval, Interval, Interval]
-NOWHERE = (False, False, NOTHING, NOTHING, NOTHING, NOTHING)
+
+
+class Contact(NamedTuple):
+    """The contact of a peg on a level line with a piece, over a range of orientations.
+
+    Symbols are those of :func:`compute_contact`.
+
+    Parameters
+    ----------
+    is_possible : whether there may be a contact.
+    is_everywhere : whether the whole line or circle has one throughout.
+    place, slope, bend : enclosures of B, B' and B''.
+    tangent : enclosure of tan nu.
+    """
+
+    is_possible: bool
+    is_everywhere: bool
+    place: Interval
+    slope: Interval
+    bend: Interval
+    tangent: Interval
+
+
+NOWHERE = Contact(False, False, NOTHING, NOTHING, NOTHING, NOTHING)
 
 
 @inner
@@ -161,11 +183,6 @@ def compute_contact(
     level, rise, bend : enclosures of k, k' and k''.
     facing : 1 where the normal's component along the line is positive, -1 where it is negative.
     within : whether only the piece itself counts, not its whole line or circle.
-
-    Returns
-    -------
-    (whether there may be a contact; whether the whole line or circle has one throughout; enclosures of B, B',
-        B'' and tan nu)
     """
     if within:
         middle = iscale(shape[DISC], isin(ishift(shape[DISC_ANGLE], turn)))
@@ -216,4 +233,4 @@ def compute_contact(
     slide = imul(ishift(1.0, iscale(-shape[CURVATURE], off)), q)
     tilt = imul(idivide(iadd(imul(along, sine), rise), cosine), ishift(1.0, iscale(shape[CURVATURE], q)))
     change = ineg(idivide(iadd(iadd(slide, tilt), imul(bend, sine)), cosine))
-    return (True, smooth, place, speed, change, idivide(sine, cosine))
+    return Contact(True, smooth, place, speed, change, idivide(sine, cosine))

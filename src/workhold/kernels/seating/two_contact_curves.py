@@ -71,7 +71,29 @@ from workhold.kernels.seating.obstacles import (
     is_on_piece,
 )
 
-PairState = tuple[float, float, float, float, float, float, float, float, float, float]
+
+class PairState(NamedTuple):
+    """A pair of contacts at one orientation, in the part's frame.
+
+    Parameters
+    ----------
+    x, y : place of the first peg in mm.
+    ax, ay, bx, by : unit outward normals at the first and at the second contact; 0 in a pocket.
+    center_x, center_y : the instant centre in mm.
+    other_x, other_y : place of the second peg in mm. In a pocket, all places are the pivot.
+    """
+
+    x: float
+    y: float
+    ax: float
+    ay: float
+    bx: float
+    by: float
+    center_x: float
+    center_y: float
+    other_x: float
+    other_y: float
+
 
 # Cells into which a turn about a pocket is cut.
 POCKET_CELLS = 16
@@ -85,20 +107,28 @@ ROUNDING = 1e-9
 def compute_pair_state(pair: Array, given: HeldPart, psi: float) -> PairState:
     """Return a pair at an orientation psi, in the part's frame.
 
-    It consists of ten numbers: place of the first peg (2), outward normals at the first and the second
-    contact (4), instant centre (2), place of the second peg (2). In a pocket, normals are 0 and all places
-    are the pivot. See ``seating.columns`` for the layout of ``pair``.
+    See ``seating.columns`` for the layout of ``pair``.
     """
     if pair[KIND] == 1.0:
         x, y = pair[PIVOT_X], pair[PIVOT_Y]
-        return (x, y, 0.0, 0.0, 0.0, 0.0, x, y, x, y)
+        return PairState(x, y, 0.0, 0.0, 0.0, 0.0, x, y, x, y)
     k = int(pair[SOURCE])
     a, b = given.rows[given.curves[k, TAIL]], given.rows[given.curves[k, HEAD]]
     alpha, d = psi + pair[ANGLE], given.reals[k, LENGTH]
     cosine, sine = cos(alpha), sin(alpha)
     s = compute_chord_state(a, b, given.reals[k], alpha, cosine, sine)
-    normals = (a[SIGN] * s[2], a[SIGN] * s[3], b[SIGN] * s[4], b[SIGN] * s[5])
-    return (s[0], s[1], *normals, s[6], s[7], s[0] + d * cosine, s[1] + d * sine)
+    return PairState(
+        s.x,
+        s.y,
+        a[SIGN] * s.ax,
+        a[SIGN] * s.ay,
+        b[SIGN] * s.bx,
+        b[SIGN] * s.by,
+        s.center_x,
+        s.center_y,
+        s.x + d * cosine,
+        s.y + d * sine,
+    )
 
 
 @inner
@@ -142,7 +172,7 @@ def write_cell(cell: Array, number: int, low: float, high: float, speed: float, 
     middle, reach = (low + high) / 2.0, (high - low) / 2.0
     cosine, sine = cos(middle), sin(middle)
     s = compute_pair_state(pair, given, middle)
-    value = compute_pair_height(pair, given, s[0], s[1], cosine, sine)
+    value = compute_pair_height(pair, given, s.x, s.y, cosine, sine)
     vague = not speed < inf
     if vague:
         # Too short a range, beside a tangency, for the height to leave its ends by more than they are apart.
@@ -150,11 +180,11 @@ def write_cell(cell: Array, number: int, low: float, high: float, speed: float, 
         for end in (low, high):
             t = compute_pair_state(pair, given, end)
             spread = max(
-                spread, 2.0 * abs(compute_pair_height(pair, given, t[0], t[1], cos(end), sin(end)) - value)
+                spread, 2.0 * abs(compute_pair_height(pair, given, t.x, t.y, cos(end), sin(end)) - value)
             )
     else:
-        bend = hypot(s[6], s[7]) + speed * (1.0 + reach)
-        spread = reach * (abs(cosine * s[6] + sine * s[7]) + reach * bend) + ROUNDING
+        bend = hypot(s.center_x, s.center_y) + speed * (1.0 + reach)
+        spread = reach * (abs(cosine * s.center_x + sine * s.center_y) + reach * bend) + ROUNDING
     turns = floor(low / TURN) * TURN
     cell[LOW], cell[HIGH], cell[SPEED] = low - turns, high - turns, speed
     cell[BOTTOM], cell[TOP] = value - spread, value + spread
@@ -200,10 +230,27 @@ def make_cells(given: HeldPart, stretches: Matrix, cells: Matrix) -> int:
     return count
 
 
-# Least and largest distance of P from the first contact in mm, the ray's unit vector in the middle of the
-# range, how far the contact moves to either side of its place there in mm, and by how much the normals at
-# both contacts turn, in radians.
-Ray = tuple[float, float, float, float, float, float, float]
+class Ray(NamedTuple):
+    """The half line from a pair's first contact on which the instant centre P lies, over a range of psi.
+
+    Parameters
+    ----------
+    least, most : least and largest distance of P from the first contact, in mm; 0 and inf where nothing is
+        known.
+    x, y : the ray's unit vector in the middle of the range.
+    off : how far the contact moves to either side of its place in the middle, in mm.
+    turn_a, turn_b : how far the normals at both contacts turn, in radians.
+    """
+
+    least: float
+    most: float
+    x: float
+    y: float
+    off: float
+    turn_a: float
+    turn_b: float
+
+
 # No unit. Rounding of a unit vector; and of quotients and products of bounds, generously counted.
 OF_DIRECTION, OF_BOUND = 1e-15, 1e-9
 
@@ -213,10 +260,7 @@ def make_ray(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach
     """Return the ray of a pair over a range of psi: the half line from the first contact on which the instant
     centre P lies.
 
-    Its seven numbers are: least and largest distance of P from the first contact in mm (0 and inf where
-    nothing is known), the ray's unit vector (x, y) in the middle of the range, how far the contact moves to
-    either side of its place there in mm, and how far the normals at both contacts turn in radians. See
-    ``base.tables`` for the layout of ``curve``, ``base.feature`` for that of ``a`` and ``b``. Symbols are
+    See ``base.tables`` for the layout of ``curve``, ``base.feature`` for that of ``a`` and ``b``. Symbols are
     those of ``seating.two_contact_curves``.
 
     Parameters
@@ -228,7 +272,7 @@ def make_ray(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach
     reach : half of the range in radians.
     """
     eta, kappa, d = curve[BACKWARD_ERROR], curve[KAPPA], curve[LENGTH]
-    px, py, across = s[6] - s[0], s[7] - s[1], abs(s[2] * s[5] - s[3] * s[4])
+    px, py, across = s.center_x - s.x, s.center_y - s.y, abs(s.ax * s.by - s.ay * s.bx)
     size = compute_length(px, py)
     is_known = curve[COINCIDENCE] == NONE and across * across > 64.0 * kappa * eta
     # How far off rounding puts the contacts, and P.
@@ -242,17 +286,17 @@ def make_ray(curve: Array, a: Array, b: Array, s: PairState, speed: float, reach
     if a[IS_ARC] != 0.0:
         turn_a += (size + move) * way / a[RADIUS]
     if b[IS_ARC] != 0.0:
-        turn_b += (compute_length(s[8] - s[6], s[9] - s[7]) + move) * way / b[RADIUS]
+        turn_b += (compute_length(s.other_x - s.center_x, s.other_y - s.center_y) + move) * way / b[RADIUS]
     if not is_known:
-        return (0.0, inf, s[2], s[3], 0.0, turn_a, turn_b)
+        return Ray(0.0, inf, s.ax, s.ay, 0.0, turn_a, turn_b)
     lever, change = size * across, d * (reach + turn_b)
     least = max((lever - change) / (across + turn_a + turn_b), size - move) * (1.0 - OF_BOUND)
     most = size + move
     if across > turn_a + turn_b:
         most = min(most, (lever + change) / (across - turn_a - turn_b))
     most *= 1.0 + OF_BOUND
-    sign = 1.0 if px * s[2] + py * s[3] >= 0.0 else -1.0
-    return (max(least, 0.0), most, sign * s[2], sign * s[3], most * reach + off, turn_a, turn_b)
+    sign = 1.0 if px * s.ax + py * s.ay >= 0.0 else -1.0
+    return Ray(max(least, 0.0), most, sign * s.ax, sign * s.ay, most * reach + off, turn_a, turn_b)
 
 
 # Columns of the middle of a cell, computed once for all that may press against its pair: cosine and sine of
@@ -283,7 +327,7 @@ def write_middles(cells: Matrix, given: HeldPart, out: Matrix) -> None:
         cell, row = cells[number], out[number]
         pair = given.pairs[int(cell[PAIR])]
         psi, reach = (cell[LOW] + cell[HIGH]) / 2.0, (cell[HIGH] - cell[LOW]) / 2.0
-        s, ray = compute_pair_state(pair, given, psi), (0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
+        s, ray = compute_pair_state(pair, given, psi), Ray(0.0, inf, 0.0, 0.0, 0.0, 0.0, 0.0)
         if pair[KIND] == 0.0 and cell[VAGUE] == 0.0:
             ray = make_ray_over(pair, given, s, cell[SPEED], reach)
         row[COSINE], row[SINE] = cos(psi), sin(psi)
@@ -300,7 +344,7 @@ def read_pair_state(middle: Array) -> PairState:
     See ``seating.two_contact_curves`` for the layout of ``middle``.
     """
     h = middle[HELD:RAY]
-    return (h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
+    return PairState(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], h[8], h[9])
 
 
 @inner
@@ -310,7 +354,7 @@ def read_ray(middle: Array) -> Ray:
     See ``seating.two_contact_curves`` for the layout of ``middle``.
     """
     r = middle[RAY:]
-    return (r[0], r[1], r[2], r[3], r[4], r[5], r[6])
+    return Ray(r[0], r[1], r[2], r[3], r[4], r[5], r[6])
 
 
 @inner
@@ -343,7 +387,7 @@ def is_foot_off(
     least, most, rx, ry, drift, turn_a, turn_b = ray
     if least <= 0.0:
         return False
-    gx, gy = s[0] - piece[X], s[1] - piece[Y]
+    gx, gy = s.x - piece[X], s.y - piece[Y]
     if piece[IS_ARC] == 0.0:
         along, at = rx * piece[AXIS_X] + ry * piece[AXIS_Y], gx * piece[AXIS_X] + gy * piece[AXIS_Y]
         if along < 0.0:
@@ -367,7 +411,7 @@ def is_foot_off(
     if push * (nx * cosine + ny * sine) < -(turn + reach):
         return True
     # The force balances two that press along their normals, so it is against the sum of those.
-    if nx * (s[2] + s[4]) + ny * (s[3] + s[5]) > 2.0 * turn + turn_a + turn_b:
+    if nx * (s.ax + s.bx) + ny * (s.ay + s.by) > 2.0 * turn + turn_a + turn_b:
         return True
     fx, fy = piece[RADIUS] * ex - gx, piece[RADIUS] * ey - gy
     play = piece[RADIUS] * turn + drift
@@ -412,13 +456,13 @@ def evaluate_root_function(function: RootFunction, psi: float) -> float:
     cosine, sine = cos(psi), sin(psi)
     if kind == APART:
         t = compute_pair_state(two, given, psi)
-        return compute_pair_height(two, given, t[0], t[1], cosine, sine) - compute_pair_height(
-            one, given, s[0], s[1], cosine, sine
+        return compute_pair_height(two, given, t.x, t.y, cosine, sine) - compute_pair_height(
+            one, given, s.x, s.y, cosine, sine
         )
     if kind == MISS:
-        f = find_foot(piece, s[6], s[7], second)
-        return cosine * (f[1] - s[1]) - sine * (f[0] - s[0]) - first
-    return measure_gap(piece, s[0] + cosine * first - sine * second, s[1] + sine * first + cosine * second)
+        f = find_foot(piece, s.center_x, s.center_y, second)
+        return cosine * (f.y - s.y) - sine * (f.x - s.x) - first
+    return measure_gap(piece, s.x + cosine * first - sine * second, s.y + sine * first + cosine * second)
 
 
 @inner

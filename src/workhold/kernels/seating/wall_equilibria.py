@@ -43,9 +43,25 @@ from workhold.kernels.seating.turning import (
 CELL = 0.3
 # The pegs of a pattern on a fence, and the contact with the wall.
 LOCATOR, TIP, ON_WALL = range(3)
-# Whether a balance is possible, whether S is smooth throughout, S' and S''.
-Rate = tuple[bool, bool, Interval, Interval]
-NOWHERE = (False, False, NOTHING, NOTHING)
+
+
+class Rate(NamedTuple):
+    """How the separation S changes over a range of orientations.
+
+    Parameters
+    ----------
+    is_possible : whether a balance is possible.
+    is_smooth : whether S is smooth throughout.
+    slope, bend : enclosures of S' and S''.
+    """
+
+    is_possible: bool
+    is_smooth: bool
+    slope: Interval
+    bend: Interval
+
+
+NOWHERE = Rate(False, False, NOTHING, NOTHING)
 
 
 class StandingPart(NamedTuple):
@@ -117,8 +133,10 @@ def compute_both_contacts(
         return (one, compute_contact(tip, turn, (high[2], high[2]), NOTHING, NOTHING, 1.0, within))
     one = compute_contact(locator, ishift(pi / 2.0, turn), level, NOTHING, NOTHING, way, within)
     # The part is higher as the locator's contact is lower; a quarter turn makes x of what was -y.
-    two = compute_contact(tip, turn, ishift(high[2], ineg(one[2])), ineg(one[3]), ineg(one[4]), 1.0, within)
-    return (one, two if one[0] else one)
+    two = compute_contact(
+        tip, turn, ishift(high[2], ineg(one.place)), ineg(one.slope), ineg(one.bend), 1.0, within
+    )
+    return (one, two if one.is_possible else one)
 
 
 @inner
@@ -130,14 +148,14 @@ def compute_rate(one: Contact, two: Contact, wall: Array, way: float) -> Rate:
     has the component 1 along x. The locator's force balances the tip's along the wall, and the wall's force
     balances the rest. S is the jaw separation in mm.
     """
-    if not (one[0] and two[0]):
+    if not (one.is_possible and two.is_possible):
         return NOWHERE
-    smooth = one[1] and two[1]
+    smooth = one.is_everywhere and two.is_everywhere
     if wall[0] == 0.0:
-        pressing = iscale(wall[1], isub(two[5], one[5]))
-        return (pressing[1] >= 0.0, smooth, isub(two[3], one[3]), isub(two[4], one[4]))
-    pressing = iscale(wall[0], ishift(1.0, imul(one[5], two[5])))
-    return (pressing[1] >= 0.0 and iscale(way, two[5])[1] >= 0.0, smooth, two[3], two[4])
+        pressing = iscale(wall[1], isub(two.tangent, one.tangent))
+        return Rate(pressing[1] >= 0.0, smooth, isub(two.slope, one.slope), isub(two.bend, one.bend))
+    pressing = iscale(wall[0], ishift(1.0, imul(one.tangent, two.tangent)))
+    return Rate(pressing[1] >= 0.0 and iscale(way, two.tangent)[1] >= 0.0, smooth, two.slope, two.bend)
 
 
 @inner
@@ -169,17 +187,17 @@ def write_balances(
         turn = (stack[depth, 0], stack[depth, 1])
         one, two = compute_both_contacts(shapes[i], shapes[j], high, upright, turn, way, True)
         known = compute_rate(one, two, stood.half_plane, way)
-        if not known[0] or has_none(known[2]):
+        if not known.is_possible or has_none(known.slope):
             continue
         verdict, middle = HALVES, (turn[0] + turn[1]) / 2.0
         one, two = compute_both_contacts(shapes[i], shapes[j], high, upright, turn, way, False)
         known = compute_rate(one, two, stood.half_plane, way)
-        if known[1]:
+        if known.is_smooth:
             one, two = compute_both_contacts(
                 shapes[i], shapes[j], high, upright, (middle, middle), way, False
             )
             verdict, turn = judge_range(
-                turn, middle, compute_rate(one, two, stood.half_plane, way)[2], known[3]
+                turn, middle, compute_rate(one, two, stood.half_plane, way).slope, known.bend
             )
             if verdict == NONE:
                 continue
@@ -214,14 +232,14 @@ def write_balance(
     piece, upright = int(stood.runs[m, 0]), stood.half_plane[0] != 0.0
     high = compute_heights(stood, piece)
     one, two = compute_both_contacts(shapes[i], shapes[j], high, upright, (theta, theta), way, True)
-    if not (one[0] and two[0]):
+    if not (one.is_possible and two.is_possible):
         return count
     if count >= out.shape[0]:
         return -1
     c, s = cos(theta), sin(theta)
     hx = c * stood.hull[piece, 0] - s * stood.hull[piece, 1]
     hy = s * stood.hull[piece, 0] + c * stood.hull[piece, 1]
-    place, speed = (one[2][0] + one[2][1]) / 2.0, (one[3][0] + one[3][1]) / 2.0
+    place, speed = (one.place[0] + one.place[1]) / 2.0, (one.slope[0] + one.slope[1]) / 2.0
     # The centre of the piece, and how it moves as the part turns.
     if upright:
         x, y, vx, vy = high[0], stood.pegs[LOCATOR, 1] + place, 0.0, speed
@@ -229,8 +247,8 @@ def write_balance(
         x, y, vx, vy = stood.pegs[LOCATOR, 0] - place, high[0], -speed, 0.0
     known, row = compute_rate(one, two, stood.half_plane, way), out[count]
     write_pose(row, theta, x - hx, y - hy, 3)
-    row[SEPARATION] = x + (two[2][0] + two[2][1]) / 2.0 - stood.pegs[TIP, 0]
-    row[SECOND], row[DOUBT] = (known[3][0] + known[3][1]) / 2.0, 1.0 if doubt else 0.0
+    row[SEPARATION] = x + (two.place[0] + two.place[1]) / 2.0 - stood.pegs[TIP, 0]
+    row[SECOND], row[DOUBT] = (known.bend[0] + known.bend[1]) / 2.0, 1.0 if doubt else 0.0
     row[MOTION], row[MOTION + 1], row[MOTION + 2] = 1.0, vx + hy, vy - hx
     row[PEG], row[PEG + 1], row[PEG + 2] = LOCATOR, TIP, ON_WALL
     row[PIECE], row[PIECE + 1], row[PIECE + 2] = i, j, stood.rows.shape[0] + piece
@@ -292,7 +310,7 @@ def write_balances_of_cell(
                 way,
                 True,
             )
-            if not seen[0]:
+            if not seen.is_possible:
                 continue
             for j in range(stood.parts[1, 0], stood.parts[1, 1]):
                 # Of a round part S does not depend on the orientation.
