@@ -126,8 +126,10 @@ def make_object(module: Any, entries: Collection[str]) -> bytes:
     for thing in (*module.functions, *module.global_variables):
         if not thing.is_declaration and thing.name not in entries:
             thing.linkage = "internal"
-    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
-    builder.getModulePassManager().run(module, builder)
+    # The second time what can never happen is gone, such as errors of functions that raise none.
+    for _ in range(2):
+        builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=3))
+        builder.getModulePassManager().run(module, builder)
     for function in module.functions:
         if function.is_declaration and not function.name.startswith("llvm.") and function.name not in OUTSIDE:
             sys.exit(f"One of the kernels {', '.join(entries)} calls {function.name}, which no library has.")

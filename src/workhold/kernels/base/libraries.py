@@ -269,6 +269,8 @@ def start_compiling(room: str, folder: Path, said: IO[str]) -> subprocess.Popen[
         "WORKHOLD_KERNELS": "building",
         "NUMBA_CPU_NAME": processor,
         "NUMBA_CPU_FEATURES": "",
+        # Numba would optimize each function by itself; a kernel is optimized as a whole.
+        "NUMBA_OPT": "0",
         "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry),
     }
     return subprocess.Popen(
