@@ -32,7 +32,7 @@ wheel: | $(BIN)/python
 
 # Of each package the tests that see most in little time.
 test: $(INSTALLED_DEV)
-	$(BIN)/python -m pytest -n auto --dist worksteal -m 'not thorough and not prove and not wheel'
+	WORKHOLD_KERNELS=interpreted $(BIN)/python -m pytest -n auto --dist worksteal -m 'not thorough and not prove and not wheel'
 
 # What a change must pass: format, lint, types, layers, the house, a true manual, all tests but the long ones.
 check: $(INSTALLED_DEV)

@@ -1,6 +1,6 @@
 """Settings of the whole suite: property tests draw the same examples every time, alone and after any other test, and know no
 deadline; kernels that only kernels call can be called by tests too, and are compiled once before several processes share the
-tests."""
+tests. With WORKHOLD_KERNELS=interpreted, as in ``make test``, such kernels run as Python instead and are not compiled."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ from typing import Any
 
 from attrs import frozen
 
+from sharpness import interpreted
 from workhold.kernels.base.feature import is_shallow
 
 __all__ = ["ROUNDED", "Rounded", "error_of"]
@@ -142,5 +143,5 @@ ROUNDED: dict[str, Any] = {
     "acos": acos,
     "atan2": atan2,
     # Asked of rows as lists.
-    "is_shallow": is_shallow.py_func,  # type: ignore[attr-defined]
+    "is_shallow": interpreted(is_shallow),
 }

@@ -22,10 +22,15 @@ from typing import Any
 
 from attrs import frozen
 
-__all__ = ["Constant", "changed", "check_sharpness"]
+__all__ = ["Constant", "changed", "check_sharpness", "interpreted"]
 
 Kernel = Callable[..., Any]
 MANUAL = Path(__file__).parents[1] / "docs" / "belief.md"
+
+
+def interpreted(kernel: Kernel) -> Any:
+    """Return the Python function of a kernel, which it is itself where kernels are not compiled."""
+    return getattr(kernel, "py_func", kernel)
 
 
 def changed(
@@ -44,7 +49,7 @@ def changed(
         When no such number stands in the kernel: it has been changed, and its row in the table must be too. Also
         when the kernel's module has none of the names.
     """
-    function: FunctionType = getattr(kernel, "py_func", kernel)  # type: ignore[assignment]
+    function: FunctionType = interpreted(kernel)
     if names and not names.keys() & function.__globals__.keys():
         raise LookupError(f"{function.__module__} has no {' or '.join(names)}")
     tree: ast.Module = copy.deepcopy(vars(function).get("tree")) or ast.parse(
@@ -100,7 +105,7 @@ class Constant:
     def form(self, times: float) -> Kernel:
         """The kernel with the constant multiplied."""
         if self.symbol:
-            value = getattr(self.kernel, "py_func", self.kernel).__globals__[self.symbol]
+            value = interpreted(self.kernel).__globals__[self.symbol]
             return self.within(changed(self.kernel, **{self.symbol: value * times}))
         return self.within(changed(self.kernel, self.literal, self.at, times))
 

@@ -91,6 +91,7 @@ def test_every_truncation_is_refused(tmp_path: Path) -> None:
             map_archive(tmp_path / "t.npz", COLUMNS, "head.json")
 
 
+@pytest.mark.thorough
 def test_damaged_bytes_give_the_same_columns_or_one_sentence(tmp_path: Path) -> None:
     """Bytes changed at random: the text is what was written or all is refused, and arrays never lie beyond the file."""
     content, random, refused = written(tmp_path / "a.npz", 5).read_bytes(), Random(1996), 0

@@ -101,6 +101,7 @@ def test_a_fixture_that_is_none_is_found_in_a_part(interrupted: Result, tmp_path
     assert any(word.startswith("a search does not find ") for word in words)
 
 
+@pytest.mark.thorough
 def test_more_found_than_there_are_is_no_part(whole: Result, tmp_path: Path) -> None:
     """Though the file by itself may be right: not all that is found is listed."""
     every = whole.counts["I"]

@@ -138,6 +138,7 @@ def test_a_wheel_has_the_library_and_its_platform(made: list[Any]) -> None:
     assert set(backend.COMPILER) <= set(backend.get_requires_for_build_wheel())
 
 
+@pytest.mark.thorough
 def test_a_pure_wheel_compiles_nothing(made: list[Any], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("WORKHOLD_WHEEL", "pure")
     backend.build_wheel("dist")

@@ -15,6 +15,7 @@ from workhold.asking.sheet import SheetQuestion
 from workhold.errors import InputError
 
 
+@pytest.mark.thorough
 def test_one_declaration_more_is_known_everywhere(tmp_path: Path) -> None:
     """In Python, the command and its help, files, requests, families, agents, schemas, and on the page."""
     program = Path(__file__).with_name("pretended_field.py")

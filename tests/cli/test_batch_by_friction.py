@@ -27,6 +27,7 @@ def read_table(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("rows")
 def test_tables_have_forces_bolts_and_parallels(run: Any, tmp_path: Path) -> None:
     out, plate = tmp_path / "out", str(EXAMPLES / "plate.json")
@@ -52,6 +53,7 @@ def test_tables_have_forces_bolts_and_parallels(run: Any, tmp_path: Path) -> Non
     assert "clamp needed N" in report and "safety reached" in report
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("rows")
 def test_pegs_alone_have_no_such_columns(run: Any, tmp_path: Path) -> None:
     out, plate = tmp_path / "out", str(EXAMPLES / "plate.json")
@@ -61,6 +63,7 @@ def test_pegs_alone_have_no_such_columns(run: Any, tmp_path: Path) -> None:
     assert "clamp needed" not in (out / "report.html").read_text()
 
 
+@pytest.mark.thorough
 @pytest.mark.usefixtures("rows")
 def test_as_many_seats_are_looked_at_as_asked(run: Any, tmp_path: Path) -> None:
     """Of all parts, and by a file of jobs of one of them."""

@@ -24,6 +24,7 @@ def test_plain_vises_are_compared_by_their_own_figures(run: Any) -> None:
     assert "its first fixture has contact area" in outcome.stdout
 
 
+@pytest.mark.thorough
 def test_a_batch_has_plain_vises_beside_others(run: Any, tmp_path: Any) -> None:
     """Their rows have no holes, and the faces that both jaws touch."""
     folder = tmp_path / "all"
@@ -56,6 +57,7 @@ def test_what_is_of_pegs_is_refused_in_a_sentence(
     assert message in outcome.stderr
 
 
+@pytest.mark.thorough
 def test_a_program_s_forces_are_told_with_their_line(run: Any, tmp_path: Path) -> None:
     """The table has the force, and the fixture says which line asks for it."""
     program, tools, path = (tmp_path / name for name in ("slot.nc", "tools.toml", "r.json"))
@@ -119,6 +121,7 @@ def test_raw_block_that_cannot_be_read_is_refused(run: Any, words: tuple[str, ..
     assert outcome.exit_code == 2 and message in outcome.stderr
 
 
+@pytest.mark.thorough
 def test_settings_of_freecad_s_vise_are_shown(run: Any, tmp_path: Path) -> None:
     """The origin is on the fixed jaw, at the top of the jaws and in their middle; other hardware has none."""
     path = tmp_path / "result.json"

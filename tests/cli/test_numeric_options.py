@@ -106,6 +106,7 @@ def refuse_faults(name: str, every: int) -> None:
     assert wrong and not any(wrong), "\n".join(filter(None, wrong))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["features", "program", "show", "drill"])
 @pytest.mark.usefixtures("folder")
 def test_words_for_numbers_are_used_or_refused_in_one_sentence(name: str) -> None:

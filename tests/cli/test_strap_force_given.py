@@ -19,6 +19,7 @@ def held(**asked):
     return workhold.design(BLOCK, StrapPlate(20, 3, 8, 6, max_force=4000), **asked)
 
 
+@pytest.mark.thorough
 def test_words_of_command_and_sheet(run, tmp_path):
     """How often the force holds the loads, a warning where that is too little, and one beyond the rating."""
     path = str(tmp_path / "held.json")

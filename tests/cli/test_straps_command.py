@@ -76,6 +76,7 @@ def write_program(folder: Any, x: int = 30, deep: int = 3, y: int = 30) -> tuple
     return *files, "--start", f"{x},{y},70", "--thickness", "25"
 
 
+@pytest.mark.thorough
 def test_a_program_alone_loads_the_part(run: Any, result_file: str, tmp_path: Any) -> None:
     asked = ("straps", result_file, "1", *write_program(tmp_path))
     outcome = run(*asked, "--jaw-force", "1kN")
@@ -87,6 +88,7 @@ def test_a_program_alone_loads_the_part(run: Any, result_file: str, tmp_path: An
     assert said["program_force"]["force"] == pytest.approx(said["quality"]["clamp_needed"])
 
 
+@pytest.mark.thorough
 def test_supports_are_named_with_their_height(run: Any, result_file: str, tmp_path: Any) -> None:
     over = ("--over", "supports", "--support-height", "15", "--pad-radius", "5")
     outcome = run("straps", result_file, "1", *write_program(tmp_path), *over)
@@ -98,6 +100,7 @@ def test_supports_are_named_with_their_height(run: Any, result_file: str, tmp_pa
     assert "holes under the part" in fewer.stdout and fewer.stdout != outcome.stdout
 
 
+@pytest.mark.thorough
 def test_a_locator_that_a_tool_hits_is_warned_of(run: Any, result_file: str, tmp_path: Any) -> None:
     """Its slot runs out over the side that a locator is at, deeper than the locator is high or not."""
     asked = ("straps", result_file, "1")
@@ -114,6 +117,7 @@ def test_options_of_a_program_want_one(run: Any, result_file: str) -> None:
     assert outcome.exit_code != 0
 
 
+@pytest.mark.thorough
 def test_heights_and_program_are_those_of_the_result(run: Any, tmp_path: Any) -> None:
     """A fixture that was designed with them asks for no more words."""
     from workhold import Program

@@ -148,6 +148,7 @@ def test_files_in_three_dimensions(result_file: Path, tmp_path: Path, run: Run) 
     assert all(f"support {name}".encode() in content for name in names) and b"clamp on top" in content
 
 
+@pytest.mark.thorough
 def test_show_and_sheet_write_the_best_supports_of_the_usual_sizes(
     result_file: Path, tmp_path: Path, run: Run
 ) -> None:

@@ -96,6 +96,7 @@ def test_pictures_are_in_the_unit_asked(
     assert f"a peg of Ø {size} lies" in words["faces"]
 
 
+@pytest.mark.thorough
 def test_the_nearest_miss_is_drawn_in_the_unit_asked(run: Any, tmp_path: Path) -> None:
     vise = ("--pitch", "10mm", "--columns", "1", "--peg-radius", "3mm", "--min-gap", "300mm")
     assert run("design", "widget", *vise, "--unit", "inch", "--draw", tmp_path).exit_code == 0

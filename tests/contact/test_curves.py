@@ -42,6 +42,7 @@ def gear(teeth: int, root: float, head: float) -> Workpiece:
     return Workpiece.from_loops("gear", [loop])
 
 
+@pytest.mark.thorough
 def test_a_chord_that_just_touches_a_circle_is_of_those_of_its_arcs_that_it_meets() -> None:
     """The heads of all teeth are on one circle. No narrow range is missing in which a chord reaches both features, and
     most others are left out."""

@@ -81,6 +81,7 @@ def test_the_diameter_is_the_largest_distance_of_a_sampling(part):
     assert farthest - 1e-9 <= diameter <= farthest + longest / 80 * 0.2 + 1e-9
 
 
+@pytest.mark.thorough
 @settings(max_examples=80)
 @given(outlines())
 def test_the_diameter_is_that_of_the_two_faces_farthest_apart(part):

@@ -115,6 +115,7 @@ def test_its_picture_shows_wall_opening_and_pegs() -> None:
     assert describe_arrangement(TOOLKIT.arrangements[0], TOOLKIT) == "Type flat: two pegs on the jaw"
 
 
+@pytest.mark.thorough
 def test_its_drawing_for_cam_has_layers_of_its_own() -> None:
     document = ezdxf.read(StringIO(make_setup_dxf(HELD, HOUSE, TOOLKIT).decode()))
     layers = {entity.dxf.layer for entity in document.modelspace()}

@@ -112,6 +112,7 @@ def test_words_and_the_part(program: Program) -> None:
     assert 'class="part"' not in svg
 
 
+@pytest.mark.thorough
 def test_it_can_be_rendered(program: Program) -> None:
     """As PNG."""
     assert convert_svg_to_png(draw_program(program)).startswith(b"\x89PNG")

@@ -80,6 +80,7 @@ def test_nothing_is_covered_or_cut_off(
     assert f"{len(pages)} of {len(pages)}" in words
 
 
+@pytest.mark.thorough
 def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seating]) -> None:
     """A name and sentences that fill pages: everything still stands on one, and on paper."""
     long = evolve(

@@ -341,6 +341,7 @@ def test_other_fixtures_in_the_same_holes_are_counted() -> None:
     assert [again.count_in_same_holes(index) for index in range(5)] == [2, 0, 2, 0, 2]
 
 
+@pytest.mark.thorough
 def test_names_in_other_scripts_and_without_end_are_drawn() -> None:
     """Whatever the name, the sheet is made and stays on the page."""
     held = example(name="部品 <b>&amp;" + "x" * 500)

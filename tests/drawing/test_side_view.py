@@ -258,6 +258,7 @@ def test_view_is_taken_where_pegs_stand_apart() -> None:
     assert choose_side_view(make_bench(result[0], SOLID, result.toolkit), SOLID, heights).way is WAYS[1]
 
 
+@pytest.mark.thorough
 def test_pegs_other_than_those_of_the_outline_are_seen() -> None:
     """The length of pegs follows from how far they stand out, which a sheet may say anew: that of a dowel that is sold, or
     of a peg 1.5 diameters deep in its hole, or through the plate where it has no thickness."""

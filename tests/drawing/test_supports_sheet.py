@@ -288,6 +288,7 @@ def test_signs_are_explained_where_they_stand() -> None:
         assert sign not in bare and sign in full
 
 
+@pytest.mark.thorough
 def test_the_drawer_names_the_dowel_that_would_do() -> None:
     """Of a part whose thickness is known and pegs' height is not: what stands beside the pegs stands there, too."""
     result = result_of("plate", False)

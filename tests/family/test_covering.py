@@ -222,6 +222,7 @@ def test_seventy_members_take_two_words() -> None:
     assert (point.setups, point.patterns, point.loss) == (2, (0, 35), 1.35)
 
 
+@pytest.mark.thorough
 def test_when_time_is_over_it_is_told_what_is_known() -> None:
     # Every pair of twelve members: greed finds six pairs, or more, and packing proves what it can.
     random = Random(11)

@@ -339,6 +339,7 @@ def test_one_and_its_half_turn_are_one_pattern() -> None:
     assert make_member("a", result, unfit=True).patterns == len(names)
 
 
+@pytest.mark.thorough
 def test_numbers_of_plans(twenty: Family) -> None:
     assert twenty.plan().point == twenty.points[0]
     assert twenty.plan(20).point == twenty.points[-1]

@@ -128,6 +128,7 @@ def test_a_name_with_room_is_told_in_full(families: dict[str, Family]) -> None:
         assert words.count("revision 12") >= 1 and "…" not in words
 
 
+@pytest.mark.thorough
 def test_what_is_moved_is_told(families: dict[str, Family]) -> None:
     plan = next(plan for plan in families["vise"].plans if len(plan.setups) > 2)
     assert list(describe_moves(plan.setups[0], None)) == []

@@ -87,6 +87,7 @@ def test_words_are_the_same_where_patterns_are(results: dict[str, Result], name:
     assert {len(some) for some in by_words.values()} == {1} == {len(some) for some in by_pattern.values()}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", HELD)
 def test_a_shifted_fixture_is_one_of_the_same_pattern(results: dict[str, Result], name: str) -> None:
     result = results[name]

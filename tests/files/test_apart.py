@@ -101,6 +101,7 @@ def test_one_that_waits_for_ever_is_ended(work: str, tmp_path: Path, monkeypatch
     wait_until(lambda: not place.exists() or not is_alive(int(place.read_text() or 0)))
 
 
+@pytest.mark.thorough
 def test_to_prepare_takes_its_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock of the reading starts behind it; what is refused while it prepares is told."""
     (tmp_path / "slow_work.py").write_text(

@@ -63,6 +63,7 @@ def test_its_files_are_written_and_say_the_same(outcomes: tuple[Path, dict[str, 
     assert few["fixtures"] == result["fixtures"][:3]
 
 
+@pytest.mark.thorough
 def test_its_fixtures_are_those_of_a_vise_of_that_type(outcomes: tuple[Path, dict[str, Any]]) -> None:
     """Three pegs on one jaw and one on the other, of two columns each."""
     vise = workhold.Vise(pitch=15, columns=2, peg_radius=2)

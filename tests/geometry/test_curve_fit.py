@@ -202,6 +202,7 @@ def test_a_line_that_turns_back_is_no_line() -> None:
     assert bound_departure(make_bezier_piece([(0, 0), (60, 0), (60, 0), (30, 0)]), line, 1.0) == np.inf
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(8)
 @pytest.mark.sampled(2)
 @pytest.mark.parametrize("fit", [0.2, 0.01, 0.001])
@@ -313,6 +314,7 @@ def test_a_curve_that_turns_back_on_its_circle_is_not_the_arc() -> None:
     assert bound_departure(split_ellipse((0, 0), (10, 0), (0, 10), 0, pi / 2), arc, 1.0) < 1e-12
 
 
+@pytest.mark.thorough
 def test_a_cusp_does_not_end_the_fit() -> None:
     """A curve with a cusp, and one whose handles vanish, are fitted within the tolerance, or their distance is said."""
     for rows in ([(0, 0), (30, 20), (0, 20), (30, 0)], [(0, 0), (0, 0), (20, 30), (40, 0)]):

@@ -44,6 +44,7 @@ def test_area_is_the_limit_of_inscribed_polygons(part):
         assert errors[2] <= errors[0] / 12 + 1e-9 * abs(area)
 
 
+@pytest.mark.thorough
 @given(outlines())
 def test_a_reversed_loop_has_the_same_points_and_the_opposite_area(part):
     """Reversing keeps the first vertex and the point set, negates the area, and is its own inverse."""

@@ -49,6 +49,7 @@ def test_the_loop_keeps_its_beginning_and_its_order() -> None:
     assert merged(slot(120).tolist()).firsts == (0, 1, 121, 122)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [8, 16, 60, 400])
 def test_polygons_stay_polygons(count: int) -> None:
     """Of 50 mm radius and up to 400 sides, 1.5 µm and more off the circle: nothing is changed, not even by a digit."""
@@ -184,6 +185,7 @@ def away(vertices: NDArray[np.float64], others: NDArray[np.float64]) -> float:
     return max(hypot(p[0] - q[0], p[1] - q[1]) for p, q in points)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [3, 16, 200])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_whole_circle_is_one_face_and_stays_so(count: int, sign: float) -> None:

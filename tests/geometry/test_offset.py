@@ -57,6 +57,7 @@ def test_every_point_at_the_radius_is_kept(part, radius):
             assert past and min(past) < 1e-6, (part.loops, radius, point)
 
 
+@pytest.mark.thorough
 @settings(max_examples=60)
 @given(outlines())
 def test_a_point_peg_sees_every_face_whole(part):

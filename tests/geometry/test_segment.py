@@ -28,6 +28,7 @@ places = st.tuples(st.floats(-100, 100), st.floats(-100, 100)).map(lambda p: (ro
 bulges = st.one_of(st.floats(0.01, 20), st.floats(-20, -0.01))
 
 
+@pytest.mark.thorough
 @given(places, places, bulges)
 def test_a_bulge_is_the_tangent_of_a_quarter_of_the_sweep(start, end, bulge):
     """The arc runs from start to end, turns by 4 atan(bulge) (counter-clockwise if positive), at constant radius."""
@@ -44,6 +45,7 @@ def test_a_bulge_is_the_tangent_of_a_quarter_of_the_sweep(start, end, bulge):
     assert arc.compute_point(0.0) == pytest.approx(middle, abs=size)
 
 
+@pytest.mark.thorough
 @given(places, places, st.one_of(st.just(0.0), bulges), st.floats(-1, 1))
 def test_parameter_is_the_inverse_of_at(start, end, bulge, part):
     """parameter(at(t)) = t for |t| <= half_extent, and moving along the normal keeps t."""
@@ -71,6 +73,7 @@ def test_the_normal_points_to_the_right(start, end, bulge):
     assert (nx, ny) == pytest.approx(((y1 - y0) / length, -(x1 - x0) / length), abs=1e-6)
 
 
+@pytest.mark.thorough
 @given(places, places, st.one_of(st.just(0.0), bulges), st.floats(-1, 1), st.floats(-1, 1))
 def test_a_part_is_the_segment_between_two_parameters(start, end, bulge, one, two):
     """part(low, high) runs over exactly the points at(low) ... at(high)."""
@@ -134,6 +137,7 @@ def off_circle(arc: Arc, point: tuple[float, float]) -> float:
     return float((x * x + y * y - radius * radius) / (2 * radius))
 
 
+@pytest.mark.thorough
 @given(
     st.tuples(*[st.floats(-100, 100)] * 4).filter(lambda p: hypot(p[2] - p[0], p[3] - p[1]) > 1),
     st.floats(-5.6, -2.4),
@@ -169,6 +173,7 @@ def faces(*loops):
     return Workpiece.from_loops("part", loops).faces
 
 
+@pytest.mark.thorough
 @given(outlines())
 def test_faces_partition_the_segments(part):
     """Every segment belongs to one face, a face is named by its smallest segment, and lengths add up."""
@@ -179,6 +184,7 @@ def test_faces_partition_the_segments(part):
         assert face.segment.length == pytest.approx(sum(part.segments[n].length for n in face.segments))
 
 
+@pytest.mark.thorough
 @given(outlines())
 def test_splitting_segments_changes_no_face(part):
     """Every segment cut in two: twice the segments, the same faces."""

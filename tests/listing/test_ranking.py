@@ -123,6 +123,7 @@ def test_names_that_cannot_be_ranked_by(names: list[str], words: str) -> None:
         resolve_ranking(names, [])
 
 
+@pytest.mark.thorough
 @given(st.lists(st.tuples(st.floats(0.001, 3.0), st.floats(0.0, 0.25)), min_size=1, max_size=12), st.data())
 def test_what_is_none_for_a_workshop_comes_last(
     figures_of: list[tuple[float, float]], data: st.DataObject
@@ -136,6 +137,7 @@ def test_what_is_none_for_a_workshop_comes_last(
     assert last == sorted(last)
 
 
+@pytest.mark.thorough
 @given(st.lists(st.integers(0, 3), min_size=2, max_size=12), st.data())
 def test_fixtures_with_a_warning_never_stand_before_those_without(
     warnings: list[int], data: st.DataObject

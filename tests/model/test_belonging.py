@@ -67,6 +67,7 @@ def test_seatings_are_of_the_result_that_is_asked() -> None:
         workhold.seatings(HELD, list(others))
 
 
+@pytest.mark.thorough
 def test_supports_are_those_of_the_fixture(tmp_path: Path) -> None:
     """On a sheet and as bodies; of the same fixture once more they are its own."""
     wide = workhold.Vise(pitch=10, columns=6, peg_radius=3)

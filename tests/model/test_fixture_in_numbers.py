@@ -23,6 +23,7 @@ TOOLKITS: list[Toolkit] = [
 ]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("toolkit", TOOLKITS, ids=lambda one: one.kind)
 def test_contacts_lie_on_faces_and_their_forces_balance(toolkit: Toolkit) -> None:
     """In the toolkit's frame, and in the part's by the inverse of the pose."""
@@ -36,6 +37,7 @@ def test_contacts_lie_on_faces_and_their_forces_balance(toolkit: Toolkit) -> Non
             assert measure_distance_to_segment(tuple(at.tolist()), faces[peg.face]) < 1e-6
 
 
+@pytest.mark.thorough
 def test_a_fixture_knows_its_rank_loads_and_what_its_jaws_are_at() -> None:
     """Loads and jaw force are those of the query where none are given; a plate has no jaws."""
     load = Load(points=(20, 10), force=80)
@@ -54,6 +56,7 @@ def test_a_fixture_knows_its_rank_loads_and_what_its_jaws_are_at() -> None:
     assert plate.jaw_separation is None and plate.travel != 0
 
 
+@pytest.mark.thorough
 def test_a_notebook_may_show_svg() -> None:
     """Of a part, and of a fixture of a result."""
     fixture = workhold.design(PART, TOOLKITS[0], best=1)[0]

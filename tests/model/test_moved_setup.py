@@ -40,6 +40,7 @@ def held(toolkit: Toolkit) -> Result:
     return workhold.design(part(LOOP), toolkit, best=5)
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("kind", KINDS)
 def test_all_stands_in_the_middle_and_nothing_changes_among_itself(kind: str) -> None:
@@ -88,6 +89,7 @@ def middle_off(fixture: Fixture, result: Result, axis: int) -> float:
     return (min(ends) + max(ends)) / 2 - plate.offset[axis] - (count - 1) * plate.pitch[axis] / 2
 
 
+@pytest.mark.thorough
 def test_without_an_end_of_the_plate_and_in_a_vise_nothing_moves() -> None:
     """Columns of jaws are nearest to the opening, rows listed in the middle; a jaw with ends has its columns."""
     for toolkit in (
@@ -100,6 +102,7 @@ def test_without_an_end_of_the_plate_and_in_a_vise_nothing_moves() -> None:
         assert {find_move_to_middle(one, toolkit, result.workpiece) for one in result} == {(0, 0)}
 
 
+@pytest.mark.thorough
 def test_a_hole_that_is_asked_for_takes_the_lowest_column_and_row() -> None:
     """What cannot be is refused with what can."""
     toolkit = KINDS["plate"]
@@ -127,6 +130,7 @@ def test_a_hole_that_is_asked_for_takes_the_lowest_column_and_row() -> None:
         move_to(held(jaw)[0], jaw, "I1")
 
 
+@pytest.mark.thorough
 def test_what_hangs_over_is_told() -> None:
     """Beyond half a pitch outside the last holes, or beyond the ends of a jaw; nothing of plates without ends."""
     plate = KINDS["plate"].with_fields({"columns": 6, "rows": 5})
@@ -148,6 +152,7 @@ def test_what_hangs_over_is_told() -> None:
     assert describe_overhang(free[0], free.toolkit, free.workpiece, str) == ""
 
 
+@pytest.mark.thorough
 def test_the_sheet_has_it_there_and_the_page_lays_the_plate_so() -> None:
     """Both name the same holes; on the page all places stay those of the list, and the plate lies elsewhere under them."""
     toolkit = KINDS["plate"]

@@ -84,6 +84,7 @@ COORDINATE = st.floats(-50, 50).map(lambda value: round(value, 3))
 PLACE = st.tuples(COORDINATE, COORDINATE, COORDINATE)
 
 
+@pytest.mark.thorough
 @given(PLACE, PLACE, st.floats(-1, 1), COORDINATE, st.floats(0, 30))
 def test_cutting_is_the_walk_of_all_moments(
     start: tuple[float, float, float],

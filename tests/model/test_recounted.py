@@ -111,6 +111,7 @@ def any_triple() -> Triple:
     return find_supports(result[0], result.query, REQUEST, best=1).triples[0]
 
 
+@pytest.mark.thorough
 def test_a_set_that_stands_as_listed_is_not_moved() -> None:
     """Nothing has another name where every support has one."""
     fixture, _, plate = on_plate(endless=True)

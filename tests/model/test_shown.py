@@ -236,6 +236,7 @@ def test_a_pose_takes_arrays_of_points() -> None:
         Pose("33", 0, 0)  # type: ignore[arg-type]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("over", ["plate", "supports"])
 def test_bolts_of_straps_and_supports_show(over: str) -> None:
     """Also those that stand beyond locators and part."""

@@ -80,6 +80,7 @@ def test_pads_stand_in_holes_of_the_plates_under_the_part(part: Workpiece, toolk
                 assert not carrier.is_blocked(one.column, one.row)
 
 
+@pytest.mark.thorough
 def test_heights_and_radii_of_the_bodies() -> None:
     """The part lies at 0 on pads; plates lie below, their holes around the pins; the screw presses on top."""
     found = found_in(Vise(pitch=15, columns=4, peg_radius=2.5))
@@ -137,6 +138,7 @@ def test_room_for_the_clamp_is_a_well_or_all_above(
     assert list(cut_room(slab, center, 5.0, 30.0)) == [slab]
 
 
+@pytest.mark.thorough
 def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path) -> None:
     """One sentence each; a GLB file holds the supports by name."""
     found = found_in(TOOLKITS[0])
@@ -156,6 +158,7 @@ def test_what_has_no_body_and_a_set_that_is_not_there_are_refused(tmp_path: Path
     assert b"support" not in path.read_bytes()
 
 
+@pytest.mark.thorough
 def test_pegs_are_as_high_above_the_plates_as_is_asked() -> None:
     """Pegs count from the plates, which lie below the part by the height of the supports."""
     found = found_in(TOOLKITS[0])

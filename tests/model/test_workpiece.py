@@ -199,6 +199,7 @@ def test_chains_of_tangent_arcs_are_accepted():
     assert len(part([[0, 0, 0.5], [40, 0, -0.45]]).faces) == 2
 
 
+@pytest.mark.thorough
 @given(
     outlines(),
     st.sampled_from([(0.02, 0, 0), (30.0, 0, 0), (1.0, 1e4, -1e4), (20.0, -1e4, 1e4), (0.01, 1e3, 0)]),

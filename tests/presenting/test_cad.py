@@ -132,6 +132,7 @@ def test_supports_stand_under_the_part(cadquery: None) -> None:
     assert distance(bodies["stepped"], bodies["left jaw"]) == pytest.approx(10.0)
 
 
+@pytest.mark.thorough
 def test_without_its_solid_the_part_is_a_prism_in_the_frame_of_the_toolkit(cadquery: None) -> None:
     first = first_choice(stepped(), "z")
     part, *others = first.to_cadquery()
@@ -139,6 +140,7 @@ def test_without_its_solid_the_part_is_a_prism_in_the_frame_of_the_toolkit(cadqu
     assert part.color == (0.36, 0.56, 0.82, 1.0)
 
 
+@pytest.mark.thorough
 def test_another_part_is_refused(cadquery: None) -> None:
     """Of another size, of several solids, or one that was drawn and not modelled."""
     pytest.importorskip("OCP", reason="the extra 'step' is not installed")

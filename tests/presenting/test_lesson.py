@@ -50,6 +50,7 @@ def slides(part: Workpiece, fixture: Fixture) -> bool:
     return False
 
 
+@pytest.mark.thorough
 def test_fixtures_are_those_of_the_list(taught: Any) -> None:
     """All of them but those with pegs on a sliding pair, under their ranks, with pegs, pose and opening."""
     part, made, fixtures = taught
@@ -143,6 +144,7 @@ def test_short_faces_of_a_detailed_part_are_left_alone() -> None:
     assert all(lengths[peg[4]] >= least for one in made["fixtures"] for peg in one["pegs"])
 
 
+@pytest.mark.thorough
 def test_the_examples_of_the_page_are_what_the_program_says() -> None:
     """The script that the page brings along holds the lessons of today, number by number."""
     place = ROOT / "building" / "lessons.py"

@@ -269,6 +269,7 @@ def test_what_is_shown_is_small() -> None:
     assert len(page) < 500_000 and "data:image/png" in page
 
 
+@pytest.mark.thorough
 def test_a_picture_is_the_same_picture_in_fewer_bytes() -> None:
     """The compact one draws the same pixels but for rounding, and numbers of a map stay exact."""
     from workhold.drawing import convert_svg_to_png

@@ -31,6 +31,7 @@ def test_a_picture_shows_itself(thing: Any, tmp_path: Path) -> None:
     assert (tmp_path / "picture.PNG").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.thorough
 def test_pictures_are_those_of_the_command_line() -> None:
     """With title, unit and peg radius handed on."""
     inch = find_unit("inch")

@@ -68,6 +68,7 @@ def test_what_cannot_be_is_said_in_the_widget(widget: Any) -> None:
     assert widget.answer["holds"] is True
 
 
+@pytest.mark.thorough
 def test_supports_show_in_the_holes_that_the_sheet_names() -> None:
     """In this vise all stands a column further left with supports; one of the right jaw moves with it."""
     pytest.importorskip("anywidget", reason="the extra 'widget' is not installed")

@@ -180,6 +180,7 @@ def test_standing_pegs_lose_no_contact(seed: int) -> None:
         assert abs(one - middle) <= reach + 1e-11
 
 
+@pytest.mark.thorough
 def test_standing_pegs_make_most_boxes_small() -> None:
     """A simple place of three locators is found to the last digits, whatever is known of the clamp."""
     small = 0

@@ -152,6 +152,7 @@ def test_nothing_is_decided_long_after_somebody_asked_to_stop(monkeypatch: pytes
     assert account.records == before and account.left >= len(second) > 0
 
 
+@pytest.mark.thorough
 def test_what_waits_is_measured_a_share_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """However much waits, and the best are those of all at once."""
     problem, records = waiting_records("oblongPart", Vise(pitch=8, columns=4, peg_radius=3))

@@ -239,6 +239,7 @@ def test_forces_at_the_ends_of_the_ratio_have_a_zero_and_none_between() -> None:
     assert (degrees_between(low, high) > 0).all()
 
 
+@pytest.mark.thorough
 def test_no_clamp_of_a_pair_holds_alone() -> None:
     """A pair that closes is a fixture with two clamps, or one of its clamps makes one by itself, never both."""
     workpiece, fields = part(NOTCHED), {"columns": 4, "rows": 4, "directions": ["-x", "-y"]}
@@ -478,6 +479,7 @@ def test_the_pitch_that_a_refusal_names_is_counted(pitch: float | tuple[float, f
         assert ranges.share_count >= 1
 
 
+@pytest.mark.thorough
 def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:
     """Faces to avoid and angles act on pairs before the best is taken."""
     workpiece, plate = part(NOTCHED), Plate((20, 16), 3, columns=4, rows=4, clamps=2)

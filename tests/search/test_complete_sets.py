@@ -9,6 +9,7 @@ import pytest
 from fixture_sets import SETS, Judge, complete_set, listed, near_an_end
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", SETS)
 def test_complete_set_is_reproduced(name: str) -> None:
     """Every fixture that is not marginal is listed once, and nothing else is; every one passes the checker. The search's own

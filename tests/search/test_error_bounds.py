@@ -96,6 +96,7 @@ def bound(contacts: list[Contact], psi: float, half: float, sizes: list[float]) 
     return bound_least_error_of_four(*spots, along, extra, given, np.empty((8, 3)), np.empty(4), np.inf)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(4))
 def test_no_contacts_in_the_stretches_have_a_smaller_error(seed: int) -> None:
     """For sides and bores, wide stretches and narrow ones, and turned pegs; narrow ones are bounded sharply."""
@@ -128,6 +129,7 @@ def test_no_contacts_in_the_stretches_have_a_smaller_error(seed: int) -> None:
     assert sharp > 5
 
 
+@pytest.mark.thorough
 def test_the_travel_counts_where_moving_pegs_hardly_clamp() -> None:
     """Their normals turn in bores, and a small part of the travel becomes a large movement."""
     rng, sharpest = np.random.default_rng(1), 0.0

@@ -16,6 +16,7 @@ def holes_of(fixture: Fixture) -> list[str]:
     return [peg.hole for peg in fixture.pegs if not peg.is_on_wall]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", TOOLKITS)
 def test_a_set_up_has_every_pose_of_the_list(kind: str) -> None:
     """Of some fixtures of the list, each by its holes."""

@@ -181,6 +181,7 @@ def test_what_comes_nearest_on_a_fence_has_forces() -> None:
     )
 
 
+@pytest.mark.thorough
 def test_another_number_of_clamps_helps() -> None:
     """A square rectangle takes a second clamp; a part that one clamp holds at every seat needs no second."""
     square = Restrictions(angles=((-0.001, 0.001),))

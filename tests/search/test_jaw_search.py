@@ -132,6 +132,7 @@ def test_block_along_the_jaws_slips_at_twice_the_friction():
     assert result[0].hold.clamp_needed == pytest.approx(2 * 300 / (2 * 0.15), rel=1e-9)
 
 
+@pytest.mark.thorough
 def test_any_direction_is_the_worst_of_all():
     around = held(loads=[Load(points=(58, 25), force=300, height=20)], toolkit=vise(parallels=[20]))
     for one in around:
@@ -161,6 +162,7 @@ def test_order_has_unfit_last_and_the_larger_grip_first():
     assert areas == sorted(areas, reverse=True)
 
 
+@pytest.mark.thorough
 def test_beyond_the_rating_is_warned_of_and_last():
     result = held(loads=LOADS, toolkit=vise(max_force=3000))
     weak = [one.hold.is_beyond_rating for one in result]
@@ -229,6 +231,7 @@ def test_faces_to_avoid_and_to_touch():
     assert poses(result) == {(0.0, 20.0, None), (180.0, 20.0, None)}
 
 
+@pytest.mark.thorough
 def test_result_does_not_depend_on_threads():
     texts = []
     for threads in (1, 2):
@@ -258,6 +261,7 @@ def test_jaw_force_given_holds_the_loads_as_often_as_it_says():
     assert held(loads=[again], safety=1)[0].hold.clamp_needed == pytest.approx(4000, rel=1e-6)
 
 
+@pytest.mark.thorough
 def test_jaw_force_too_small_is_told():
     enough, less = (
         next(one for one in held(loads=LOADS, jaw_force=force) if one.pose.theta_deg == 0.0)

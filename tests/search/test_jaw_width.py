@@ -201,6 +201,7 @@ def test_a_jaw_wider_than_every_part_changes_columns_alone() -> None:
         assert other.quality["jaw_contact"] == pytest.approx(other.pegs[1].x - other.pegs[0].x, abs=1e-9)
 
 
+@pytest.mark.thorough
 def test_the_best_are_the_first_of_all_and_may_be_ranked_by_what_the_jaw_holds() -> None:
     """However many are asked for, in any order; without ends of a jaw there is no such figure."""
     vise = FlatJaw(pitch=(11, 9), peg_radius=2.5, columns=7, jaw_width=33)

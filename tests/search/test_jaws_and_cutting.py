@@ -48,6 +48,7 @@ def designed(folder: Path, outline=RECTANGLE, **more):
     )
 
 
+@pytest.mark.thorough
 def test_a_pocket_names_its_line_and_stands_before_verification(files: Path) -> None:
     result = designed(files)
     first = result[0].hold
@@ -59,6 +60,7 @@ def test_a_pocket_names_its_line_and_stands_before_verification(files: Path) -> 
     assert (outcome.proven, outcome.faults) == (len(result), ())
 
 
+@pytest.mark.thorough
 def test_loads_and_the_program_together_ask_for_the_worst(files: Path) -> None:
     load = workhold.Load(points=((50, 30),), force=6000, directions=(0, 0))
     square = workhold.Restrictions(angles=[(0, 0)])
@@ -68,6 +70,7 @@ def test_loads_and_the_program_together_ask_for_the_worst(files: Path) -> None:
     assert both.program_need == alone.program_need
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("change", [{"force": 0.9}, {"force": 1.1}, {"line": 5}, {"force": None}])
 def test_another_force_or_line_is_refuted(files: Path, change: dict[str, float | None]) -> None:
     result = designed(files)
@@ -80,6 +83,7 @@ def test_another_force_or_line_is_refuted(files: Path, change: dict[str, float |
     assert workhold.verify(evolve(result, holds=(told, *result.holds[1:]))).refuted == 1
 
 
+@pytest.mark.thorough
 def test_a_file_keeps_what_the_program_asks_for(files: Path) -> None:
     result = designed(files)
     path = files / "r.json"
@@ -94,6 +98,7 @@ def test_a_file_keeps_what_the_program_asks_for(files: Path) -> None:
     assert entry["program_force"]["force"] == entry["quality"]["clamp_needed"]
 
 
+@pytest.mark.thorough
 def test_where_a_jaw_cannot_press_all_over_the_program_is_held_by_no_force(files: Path) -> None:
     result = designed(files, ((0, 0), (100, 0), (50, 60)))
     held = [one for one in result.holds if not one.full_contact]

@@ -98,6 +98,7 @@ def make_case(seed):
     return part, program_of([*rows, (3, True, (*place(), -1.0), (*place(), -1.0), 0.0)], clearance)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(24))
 def test_fixtures_are_those_that_a_walk_finds_clear(seed):
     """With the parallels where they were put; what is left out is not clear with parallels anywhere."""
@@ -131,6 +132,7 @@ def is_parallel_clear(fixture, program, y, wide):
     return slow_reach(fixture, program, (-9, y, LOW.jaw_width + 9, y + wide), 0.0) > program.clearance + 3.0
 
 
+@pytest.mark.thorough
 def test_walk_rules_some_out_and_leaves_some():
     left = taken = moved = 0
     for seed in range(24):

@@ -117,6 +117,7 @@ def key_of(fixture: Any, count: int) -> tuple[Any, ...]:
     return tuple((peg.carrier, peg.hole, peg.face % count) for peg in fixture.pegs), *places
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("name", PRISMS)
 def test_a_prism_gives_the_same_list_whatever_the_heights(name: str) -> None:

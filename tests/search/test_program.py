@@ -152,6 +152,7 @@ M30
 """
 
 
+@pytest.mark.thorough
 def test_a_program_shifted_with_its_zero_is_the_same(tmp_path: Path) -> None:
     part, toolkit, places = load("widget"), Vise(8, 2, 3), (-20.0, -18.0, 25.0, 28.0, -15.0)
     found = []

@@ -27,6 +27,7 @@ def by_place(result):
     return {(round(one.pose.theta_deg, 6), one.hold.parallels, one.hold.stop): one for one in result}
 
 
+@pytest.mark.thorough
 def test_jaws_hold_what_they_would_of_a_block_of_that_size():
     """The block of 66 by 64 by 32 mm; loads act as much higher as the part lies in it."""
     raw = held(ELL, TOOLKIT, thickness=25.0, raw=RAW, loads=LOADS)
@@ -40,6 +41,7 @@ def test_jaws_hold_what_they_would_of_a_block_of_that_size():
     assert verify(raw).holds
 
 
+@pytest.mark.thorough
 def test_query_is_that_of_the_block_and_keeps_the_part():
     query = held(ELL, TOOLKIT, thickness=25.0, raw=RAW, loads=LOADS).query
     assert query.workpiece.is_alike(evolve(BLOCK, finished=query.workpiece.finished))
@@ -79,6 +81,7 @@ def test_drill_that_stays_in_the_block_spares_the_parallels():
         assert one.hold.has_moved_parallels == moved
 
 
+@pytest.mark.thorough
 def test_tools_cut_the_block_and_nothing_beside_it(tmp_path):
     """Forces count where a tool meets the block: 3 mm beside the part, up to 2 mm above it."""
     text = "G21 G90\nT1 M6\nS2000 M3\nG0 X-50. Y-10. Z60.\nG1 {} F300\nG1 X80.\nG0 Z60.\nM30\n"
@@ -110,6 +113,7 @@ def test_turns_that_the_part_has_and_not_the_block_are_told_apart():
     assert sum(held(rectangle(), vise(), thickness=25.0, raw=RAW).distinct.values()) == 4
 
 
+@pytest.mark.thorough
 def test_file_keeps_the_block_and_the_part(tmp_path):
     program = cut_beside(30.0, 9.0)
     found = held(ELL, TOOLKIT, thickness=25.0, raw=RAW, loads=LOADS, program=program)

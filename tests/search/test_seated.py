@@ -97,6 +97,7 @@ def test_each_seating_is_that_of_its_fixture(seated: Result) -> None:
     assert again.listing.result[0].seating == told
 
 
+@pytest.mark.thorough
 def test_warnings_are_of_a_small_opening_and_a_close_reading(seated: Result) -> None:
     for told in seated.seating:
         reading = told.find_least_reading()
@@ -145,6 +146,7 @@ def test_the_result_is_the_same_on_any_number_of_threads(
     assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()
 
 
+@pytest.mark.thorough
 def test_every_form_says_the_same(seated: Result, tmp_path: Path) -> None:
     for name in ("a.json", "a.npz", "a.csv"):
         workhold.save(seated, tmp_path / name)
@@ -184,6 +186,7 @@ def test_a_file_with_a_seating_that_is_none_is_refused(seated: Result, tmp_path:
             workhold.open(path)
 
 
+@pytest.mark.thorough
 def test_rules_leave_out_what_is_not_as_asked_and_say_so(seated: Result) -> None:
     kept = workhold.design(WEDGE, VISE, seating=LOOKED_AT, foolproof=True)
     wanted = [told for told in seated.seating if told.is_foolproof]
@@ -300,6 +303,7 @@ def test_of_two_clamps_no_seating_may_be_told_and_the_note_must(tmp_path: Path) 
     assert any("than of the 0 that it is asked of" in fault for fault in outcome.faults)
 
 
+@pytest.mark.thorough
 def test_an_opening_is_told_only_with_a_pass_that_is_one(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

@@ -31,6 +31,7 @@ def seen(fixtures: Any) -> list[Any]:
     return [evolve(fixture, listed=None) for fixture in fixtures]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", TOOLKITS)
 def test_the_precise_ones_of_the_whole_list_are_listed(kind: str) -> None:
     """Also where only the best are sought; the account, a new search and the file agree with it."""
@@ -44,6 +45,7 @@ def test_the_precise_ones_of_the_whole_list_are_listed(kind: str) -> None:
     assert seen(best) == seen(sifted[:3])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", [kind for kind in TOOLKITS if kind != "two clamps"])
 def test_those_of_the_whole_list_are_listed_that_touch_all_the_faces(kind: str) -> None:
     """Of each face one contact is enough."""
@@ -58,6 +60,7 @@ def test_those_of_the_whole_list_are_listed_that_touch_all_the_faces(kind: str) 
         assert workhold.verify(sifted, complete=True).holds
 
 
+@pytest.mark.thorough
 def test_a_corner_on_a_wall_touches_both_of_its_faces() -> None:
     """Also the one that a table of fixtures does not name."""
     corners = [(0, 0), (20, 9), (41, 0), (45, 20), (20, 37), (-5, 20)]
@@ -73,6 +76,7 @@ def test_a_corner_on_a_wall_touches_both_of_its_faces() -> None:
     assert hidden
 
 
+@pytest.mark.thorough
 def test_the_file_carries_what_was_asked(tmp_path: Any) -> None:
     """And says nothing of it where nothing was asked, as ever."""
     asked = {"restrictions": workhold.Restrictions(touch=(1, 3)), "max_location_error": 0.07}
@@ -86,6 +90,7 @@ def test_the_file_carries_what_was_asked(tmp_path: Any) -> None:
     assert '"touch"' not in text and "max_location_error" not in text
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["vise", "plate", "fence"])
 def test_a_fixture_that_is_not_as_asked_is_refuted(kind: str) -> None:
     """The verifier asks each by itself."""
@@ -102,6 +107,7 @@ def test_a_fixture_that_is_not_as_asked_is_refuted(kind: str) -> None:
         assert all(words in one.reason for one in outcome.unproven)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", ["vise", "plate", "fence"])
 def test_where_none_is_left_it_says_so(kind: str) -> None:
     """The note names what was asked, the explanation the rule, and what would help."""

@@ -100,6 +100,7 @@ def test_what_is_listed_before_somebody_asks_to_stop_stays(tmp_path: Path) -> No
     assert len(in_memory(SYMMETRIC, tmp_path, **stopped_at(LISTING))) == MOST
 
 
+@pytest.mark.thorough
 def test_what_is_not_measured_soon_is_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Asked to stop before, the first parts are measured, and counts are those of what is."""
     monkeypatch.setattr("workhold.proof.deciding.GRACE", 0.0)

@@ -101,6 +101,7 @@ COUNTED = (
 )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "radius", "pitch", "holes", "count"), COUNTED, ids=[one[0].name for one in COUNTED]
 )
@@ -126,6 +127,7 @@ def test_seats_of_straight_sides_are_those_of_closed_forms(part, radius, pitch, 
     assert matched == len(table) == (count or len(table)) > 100
 
 
+@pytest.mark.thorough
 def test_a_locator_in_an_inner_corner_makes_no_seat():
     """It touches two sides there, four contacts of three locators: eight poses of the L, which are left out."""
     at_ends = [one for one in polygon_seats(ELL, 3.0, (20, 20), 8, 6) if one.room < 1e-6]
@@ -146,6 +148,7 @@ def test_a_rectangle_square_to_the_plate_is_counted_by_hand(wide, high, pitch):
     assert square.sum() == 2 * per_way
 
 
+@pytest.mark.thorough
 def test_half_a_turn_makes_no_other_seat_unless_it_moves_bolts():
     """The contract's 4,072 seats of a rectangle, and half of them where a half turn changes nothing."""
     asked = {"columns": 8, "rows": 6}
@@ -156,6 +159,7 @@ def test_half_a_turn_makes_no_other_seat_unless_it_moves_bolts():
     assert len(find_seats(Query(BLOCK, StrapPlate(20, 3, **asked, **LOPSIDED))).table) == 4072
 
 
+@pytest.mark.thorough
 def test_seats_of_clamps_are_among_them():
     """Whatever three locators a clamp presses a part against, or two do."""
     _, ours = seats_of(ELL, 20, 8, 6)
@@ -177,6 +181,7 @@ def test_seats_follow_the_part_and_fewer_holes_are_a_subset():
     assert len(there) == len(small) and all(is_among(one, there) for one in small)
 
 
+@pytest.mark.thorough
 def test_rules_leave_fewer_seats():
     plate = StrapPlate(20, 3, 8, 6)
     every = len(find_seats(Query(BLOCK, plate)).table)
@@ -199,6 +204,7 @@ def block():
     return workhold.design(BLOCK, StrapPlate(20, 3, 8, 6), **asked)
 
 
+@pytest.mark.thorough
 def test_the_first_seats_have_the_straps_that_need_least(block):
     """As many as asked, in order; straps as the report on a fixture finds them."""
     assert block.found == {"strapped": 2036} and len(block) == 12
@@ -213,6 +219,7 @@ def test_the_first_seats_have_the_straps_that_need_least(block):
     assert [one.hole for one in found.straps] == [one.hole for one in first.hold.straps]
 
 
+@pytest.mark.thorough
 def test_the_force_is_that_of_a_program_that_shares_nothing(block):
     for fixture in block[:3]:
         search = StrapSearch(fixture, block.query, make_question(block.query))
@@ -225,6 +232,7 @@ def test_the_force_is_that_of_a_program_that_shares_nothing(block):
         assert fixture.hold.clamp_needed == pytest.approx(theirs, rel=0.03)
 
 
+@pytest.mark.thorough
 def test_answers_do_not_depend_on_threads_or_the_file(block, tmp_path):
     """The same bytes from one thread and two, and from a result that was read."""
     texts = []
@@ -243,6 +251,7 @@ def test_answers_do_not_depend_on_threads_or_the_file(block, tmp_path):
     assert len((tmp_path / "made.csv").read_text().splitlines()) == 13
 
 
+@pytest.mark.thorough
 def test_a_plate_without_ends_has_no_hole_below_its_first():
     result = workhold.design(BLOCK, StrapPlate(20, 3), loads=[LOAD], thickness=25, strapped=3, best=3)
     for fixture in result:
@@ -251,6 +260,7 @@ def test_a_plate_without_ends_has_no_hole_below_its_first():
         assert fixture.contact_points.shape == (3, 2)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("count", "pitch"), [(1, 20), (2, 20), (3, 20)])
 def test_straps_over_supports_need_the_least_force_of_all_sets(count, pitch):
     """Every three holes under the part, with every choice of those under straps, is asked for its force."""
@@ -276,6 +286,7 @@ def test_straps_over_supports_need_the_least_force_of_all_sets(count, pitch):
             assert one.at == plate.plates[0].compute_hole_center(*one.over)
 
 
+@pytest.mark.thorough
 def test_friction_of_supports_counts_under_straps_and_that_of_the_plate_does_not():
     def need(**friction):
         plate = StrapPlate(20, 3, 8, 6, over="supports")
@@ -285,6 +296,7 @@ def test_friction_of_supports_counts_under_straps_and_that_of_the_plate_does_not
     assert need(plate=0.3) == need() > need(support=0.3)
 
 
+@pytest.mark.thorough
 def test_friction_is_named_of_what_is_below():
     for over in ("plate", "supports"):
         result = workhold.design(BLOCK, StrapPlate(20, 3, 8, 6, over=over), thickness=25, strapped=1, best=1)
@@ -297,6 +309,7 @@ def test_the_largest_force_is_unknown_where_one_is():
     assert find_largest_force([3.0, None]) is find_largest_force([]) is None
 
 
+@pytest.mark.thorough
 def test_a_plate_without_ends_has_its_supports_in_holes_with_names():
     plate = StrapPlate(20, 3, over="supports")
     for fixture in workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=4, best=4):
@@ -304,6 +317,7 @@ def test_a_plate_without_ends_has_its_supports_in_holes_with_names():
         assert {one.over for one in fixture.hold.straps} <= set(fixture.hold.supports)
 
 
+@pytest.mark.thorough
 def test_pads_that_find_no_three_holes_leave_no_straps():
     plate = StrapPlate(20, 3, 8, 6, over="supports", supports={"pad_radius": 9, "pad_margin": 15})
     result = workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=1, best=3000)
@@ -312,6 +326,7 @@ def test_pads_that_find_no_three_holes_leave_no_straps():
     assert "The best seat is not held: there are no three supports" in str(result.notes[-1])
 
 
+@pytest.mark.thorough
 def test_bolts_stand_in_holes_of_their_own():
     plate = StrapPlate(20, 3, 8, 6, bolt_pitch=20, bolt_offset=10)
     result = workhold.design(BLOCK, plate, loads=[LOAD], thickness=25, strapped=1, best=1)
@@ -323,12 +338,14 @@ def test_bolts_stand_in_holes_of_their_own():
         assert bolts.name_place(*one.hole).startswith("B-")
 
 
+@pytest.mark.thorough
 def test_without_loads_there_are_seats_and_a_push_alone():
     result = workhold.design(BLOCK, StrapPlate(20, 3, 8, 6), best=4)
     assert all(fixture.hold.push and not fixture.hold.straps for fixture in result)
     assert any("give a load" in str(note) for note in result.notes)
 
 
+@pytest.mark.thorough
 def test_a_disc_and_faces_that_are_avoided_leave_no_seat():
     """Three normals through one centre leave a disc free to turn."""
     disc = Workpiece.from_loops("disc", [[[-20, 0, 1], [20, 0, 1]]])

@@ -118,6 +118,7 @@ def test_old_files_keep_their_order(tmp_path: Path) -> None:
     assert workhold.open(tmp_path / "new.json").query.rank_by[:3] == HOUSE_ORDER
 
 
+@pytest.mark.thorough
 def test_the_first_lies_as_drawn_where_others_are_hardly_better() -> None:
     """A plate that could stand on any of its sides lies as drawn, a bore is left alone, whatever is ranked by then."""
     result = answer(

@@ -115,6 +115,7 @@ def test_what_a_clamp_alone_does_not_press_is_told(result: Result) -> None:
         assert (compute_working_forces(reactions)[0] > 0.0).all()
 
 
+@pytest.mark.thorough
 def test_steps_tell_what_to_push_hold_tighten_and_look_at(result: Result) -> None:
     """Each locator and face is named to push against and to look at, the order is that told elsewhere, and for each clamp
     that may be first what it leaves without force; names of fences and clamps, and no option of a command."""

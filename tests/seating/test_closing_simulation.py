@@ -56,6 +56,7 @@ def check_way(
         assert turn * size + hypot(*(other - one)[1:3]) < 0.1 * size
 
 
+@pytest.mark.thorough
 def test_what_is_put_nearer_than_placing_comes_home():
     """Jaws open by nearly the capture opening, or a peg is in the way."""
     solver, fixture, told = solved(CASE)

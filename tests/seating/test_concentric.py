@@ -92,6 +92,7 @@ def test_three_pegs_touch_and_the_separation_is_stationary(found):
     assert len(kinds) == 8, kinds
 
 
+@pytest.mark.thorough
 def test_ways_down_end_nowhere_that_is_not_known(found):
     """Where a part comes to rest so, ways down end there: in a seat, and in none that is unsettled."""
     looked_at = 0

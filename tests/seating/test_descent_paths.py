@@ -160,6 +160,7 @@ def test_a_long_step_is_looked_at_between_its_ends():
         assert lasts[0] == last
 
 
+@pytest.mark.thorough
 def test_nodes_say_how_far_their_way_has_come(ways):
     """All of it counted, and what the orientation's cosine and sine are."""
     cache = ways[0][1].subsets[0][1].cache

@@ -73,6 +73,7 @@ def test_holdings_meet_as_of_each_cell_by_itself():
     assert np.array_equal(fill_rows(ROOT_LENGTH, 1024, write_two_pairs, *tall, holdings.sought, *work), every)
 
 
+@pytest.mark.thorough
 def test_many_fixtures_are_told_as_one_by_one():
     """In their order, two of one pattern among them, with any number of threads."""
     solver, fixture, told = solved(1)

@@ -42,6 +42,7 @@ def test_pieces_lie_in_their_discs_and_reach_their_edges(number):
         assert radius - 1e-3 <= away <= radius + 1e-9
 
 
+@pytest.mark.thorough
 def test_rolled_corners_make_up_a_turn():
     """Around a convex part the pegs' boundary is its outline and one circle (J. Steiner, 1840), blunt corners included."""
     for part in (*POLYGONS, workhold.load("oblongPart")):

@@ -146,6 +146,7 @@ def comes_home(name: str, rank: int, seed: int, share: float, steps: int) -> boo
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", KITS)
 def test_what_is_let_go_in_the_cage_comes_home(name):
@@ -263,6 +264,7 @@ def test_an_opening_vise_is_a_closing_one_seen_from_its_other_jaw():
             assert (one.joined[:, 0] != one.joined[:, 1]).any()
 
 
+@pytest.mark.thorough
 def test_a_plate_with_the_pegs_of_a_vise_says_the_same():
     """Three pegs and one: jaws and clamp differ in their stop alone, which no seat here is near."""
     vise = Vise(pitch=20, columns=2, peg_radius=3)

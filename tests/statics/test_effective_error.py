@@ -162,6 +162,7 @@ def test_why_first_says_what_counts() -> None:
     assert explain_why_first(answer(Query(block(), two, rank_by="penalty", best=3), threads=1)) == ""
 
 
+@pytest.mark.thorough
 def test_why_first_says_what_stands_square() -> None:
     """None at all, none among those listed, none within a tenth, or none that has no warning or is fit."""
     whole = answer(Query(block(), Plate(pitch=20, peg_radius=3)), threads=1)

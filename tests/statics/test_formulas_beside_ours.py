@@ -58,6 +58,7 @@ def read_program(folder: Path, cuts: list[tuple[tuple[int, int], tuple[int, int]
     return Program.read(folder / "slots.nc", folder / "tools.toml", thickness=THICK, start=(30, 30, 70))
 
 
+@pytest.mark.thorough
 def test_single_loads_are_as_written() -> None:
     rows = list(list_rows("load"))
     assert [row[0] for row in rows] == list(LOADS)
@@ -68,6 +69,7 @@ def test_single_loads_are_as_written() -> None:
         assert here == f"{hold(20, loads=[load]).hold.clamp_needed:.0f} N", name
 
 
+@pytest.mark.thorough
 def test_cuts_of_a_program_are_as_written(tmp_path: Path) -> None:
     rows = list(list_rows("cut"))
     assert [row[0] for row in rows] == [*CUTS, "the whole program"]

@@ -104,6 +104,7 @@ def test_more_of_everything_that_holds_never_asks_for_more(case):
     assert needed(with_stop, (point, force)) <= need * (1 + 1e-7) + 1e-6
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", RANDOM)
 def test_force_is_that_of_another_program(case):
     height, width, opening, friction, force, share = case
@@ -113,6 +114,7 @@ def test_force_is_that_of_another_program(case):
     assert need == pytest.approx(other, rel=0.03, abs=1.0)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", RANDOM[:6])
 def test_force_on_a_step_is_that_of_another_program(case):
     height, width, opening, friction, force, share = case

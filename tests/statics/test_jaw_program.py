@@ -89,6 +89,7 @@ PATHS = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("direction", ["any", "feed"])
 @pytest.mark.parametrize("name", PATHS)
 def test_force_is_the_hardest_of_loads_tried_one_by_one(name, direction):
@@ -100,6 +101,7 @@ def test_force_is_the_hardest_of_loads_tried_one_by_one(name, direction):
     assert most * (1 - 1e-9) <= need <= most * 1.012
 
 
+@pytest.mark.thorough
 def test_line_that_asks_most_is_named():
     program = program_of([(50, 30, 12), (52, 30, 12), (52, 30, 12), (99, 59, 25), (97, 59, 25)])
     need = asked(block(), program)
@@ -109,6 +111,7 @@ def test_line_that_asks_most_is_named():
     assert need.force == pytest.approx(max(only), rel=GAP)
 
 
+@pytest.mark.thorough
 def test_part_and_path_turned_together_ask_for_the_same():
     points, bulges = PATHS["arc"]
     program, grip = program_of(points, bulges), block()
@@ -117,6 +120,7 @@ def test_part_and_path_turned_together_ask_for_the_same():
     assert other.force == pytest.approx(asked(grip, program).force, rel=2 * GAP)
 
 
+@pytest.mark.thorough
 def test_more_force_or_safety_asks_for_more_and_none_for_nothing():
     points, _ = PATHS["pocket"]
     need = asked(block(), program_of(points)).force
@@ -147,6 +151,7 @@ def test_corners_have_both_torques_and_both_ends_of_the_axial_force():
     assert set(rows[:, 2]) == {200.0, -1000.0}
 
 
+@pytest.mark.thorough
 def test_loads_in_one_cone_are_answered_by_one_motion():
     rng, grip = np.random.default_rng(3), block()
     loads = grip.compute_wrenches(
@@ -157,6 +162,7 @@ def test_loads_in_one_cone_are_answered_by_one_motion():
     assert together == pytest.approx(each, rel=1e-8, abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_what_suffices_does_not_stand_for_the_least():
     rng, grip = np.random.default_rng(5), block()
     loads = grip.compute_wrenches(

@@ -34,6 +34,7 @@ def found() -> Supports:
     raise AssertionError("take another part")
 
 
+@pytest.mark.thorough
 def test_both_say_the_same(found: Supports) -> None:
     """Closing force, openings, and what is taken to be flat; in the unit that is asked for."""
     page = notes_of_page(found, "mm")

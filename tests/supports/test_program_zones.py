@@ -255,6 +255,7 @@ def crowded() -> tuple[TouchableFace, ClampPlaces]:
     return face, ClampPlaces(face, 3.0, None)
 
 
+@pytest.mark.thorough
 def test_zones_some_at_a_time_are_what_they_are_together() -> None:
     """Only those near a point are looked at; what is near to their box from outside counts."""
     face, places = crowded()

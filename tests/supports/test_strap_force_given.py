@@ -40,6 +40,7 @@ def held(over="plate", program=None, **asked):
     return workhold.design(BLOCK, PLATES[over], thickness=25, **asked, **with_program)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("over", PLATES)
 def test_without_a_weight_twice_the_force_holds_twice_the_loads(over, slot):
     """The number of times is exact: so many times the loads need just the force given."""
@@ -52,6 +53,7 @@ def test_without_a_weight_twice_the_force_holds_twice_the_loads(over, slot):
     assert twice.clamp_needed == pytest.approx(hold.clamp_needed)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("share", [0.3, 2.0])
 @pytest.mark.parametrize("over", PLATES)
 def test_beside_a_weight_it_is_never_too_much_and_not_far_off(over, share, slot):
@@ -93,6 +95,7 @@ def test_bounds_at_the_force_needed_and_beyond():
     assert bound_safety(5000, 2, 0, 0, 0) == bound_safety(5000, 2, 1e-6, 1e-6, 0) == inf
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("weight", [None, 400.0])
 @pytest.mark.parametrize("over", PLATES)
 def test_a_file_says_it_and_a_verification_derives_it(over, weight, slot, tmp_path):
@@ -121,6 +124,7 @@ def test_a_file_says_it_and_a_verification_derives_it(over, weight, slot, tmp_pa
     assert "how often the given force holds them" in verify_file(tmp_path / "faulty.json").unproven[0].reason
 
 
+@pytest.mark.thorough
 def test_a_spreadsheet_has_it_where_a_force_is_given(tmp_path):
     for force in (FORCE, None):
         workhold.save(held(jaw_force=force), tmp_path / "rows.csv", overwrite=True)
@@ -129,6 +133,7 @@ def test_a_spreadsheet_has_it_where_a_force_is_given(tmp_path):
         assert len(head.split(",")) == len(row.split(","))
 
 
+@pytest.mark.thorough
 def test_a_report_on_a_fixture_with_clamps_says_it():
     first = workhold.design(BLOCK, Plate(20, 3, 8, 6, clamps=2), best=1, jaw_force=77.0)[0]
     found = first.straps(25, loads=LOADS[:1], jaw_force=FORCE)

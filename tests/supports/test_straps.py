@@ -43,6 +43,7 @@ def search_of(fixture, loads=(), count=2, reach=(20.0, 50.0), tip=TIP, **asked):
     )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("part", [BLOCK, ELL, ROUNDED], ids=lambda part: part.name)
 def test_the_force_is_that_of_a_program_that_shares_nothing(part):
     fixture = first_of(part)
@@ -89,6 +90,7 @@ def test_a_push_into_a_locator_asks_for_nothing(block):
     assert block.straps(THICK, loads=[into]).clamp_needed == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.thorough
 def test_the_best_set_is_the_best_of_all(block):
     loads = [SpatialLoad(points=[(20, 15), (85, 50)], force=200, directions=(-20, 70), axial=(-60, 90))]
     search = search_of(block, loads, reach=(20.0, 30.0), zones=(workhold.circle_zone(50, 30, 25),))
@@ -170,6 +172,7 @@ def test_tips_and_bolts_stand_where_they_can(block):
     assert {tuple(one) for one in places.hole}.isdisjoint({(peg.column, peg.row) for peg in block.pegs[:3]})
 
 
+@pytest.mark.thorough
 def test_a_push_by_hand_presses_all_locators(block):
     for part in (BLOCK, ELL, ROUNDED):
         fixture = first_of(part)

@@ -101,6 +101,7 @@ def test_fewer_places_are_left_beside_what_rises(solids):
         assert 0 < len(kept) < len(every)
 
 
+@pytest.mark.thorough
 def test_a_strap_that_crosses_the_body_is_seen(solids, tmp_path):
     """A file whose strap lies across the body, and one whose bolt stands below what juts out."""
     _, part = solids["rail"]
@@ -132,6 +133,7 @@ def test_a_strap_that_crosses_the_body_is_seen(solids, tmp_path):
         assert any(words in fault for fault in said), (words, said)
 
 
+@pytest.mark.thorough
 def test_capsules_keep_off_regions():
     """Against distances of many points of their axes."""
     square = np.array([(0, 0, 0), (40, 0, 0), (40, 30, 0), (20, 30, 0.6), (0, 30, 0)], float)
@@ -158,6 +160,7 @@ def test_bolts_keep_off_what_juts_out(solids):
     assert are_beside_part(flat, at, 3.0).all()
 
 
+@pytest.mark.thorough
 def test_the_heel_behind_the_bolt_keeps_off_the_rib(solids):
     """The bar ends one width behind its bolt: there it runs into the rib at 30, or ends at 27."""
     _, part = solids["rail"]

@@ -24,6 +24,7 @@ def clamped():
     return workhold.design(BLOCK, Plate(20, 3, 8, 6, clamps=2), best=1)[0]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("over", ["plate", "supports"])
 @pytest.mark.parametrize("loads", [LOADS, ()], ids=["loaded", "tools alone"])
 def test_the_answer_is_that_of_a_plate_with_straps(over, loads, slot):
@@ -43,6 +44,7 @@ def test_the_answer_is_that_of_a_plate_with_straps(over, loads, slot):
         assert bare.program_need is None
 
 
+@pytest.mark.thorough
 def test_fewer_places_are_free_beside_a_program(clamped, slot):
     counts = [
         clamped.straps(25, loads=LOADS, program=slot, strap_height=height).places for height in (1, 200)
@@ -51,6 +53,7 @@ def test_fewer_places_are_free_beside_a_program(clamped, slot):
     assert free > counts[0] > 0 and counts[0] >= counts[1]
 
 
+@pytest.mark.thorough
 def test_pads_have_the_sizes_given_and_keep_off_zones(clamped):
     def held(**sizes):
         return clamped.straps(25, loads=LOADS, over="supports", **sizes)

@@ -138,6 +138,7 @@ def same_figures(one: Case, other: Case, renamed) -> None:
     assert after.jaw_force == pytest.approx(before.jaw_force)
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", NAMES)
 @given(angle=st.floats(-360, 360), x=st.floats(-300, 300), y=st.floats(-300, 300))

@@ -26,6 +26,7 @@ def holds(ball: arb, value: float, tolerance: float = 1e-9) -> bool:
     return bool(abs(ball - value) < tolerance * max(1.0, abs(value)))
 
 
+@pytest.mark.thorough
 @given(outlines(), seeds)
 def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: int) -> None:
     random = Random(seed)
@@ -47,6 +48,7 @@ def test_distances_and_gaps_are_those_of_the_floats(workpiece: Workpiece, seed: 
             assert holds(side.compute_gap(make_exact_point(x, y)), gap, 1e-8)
 
 
+@pytest.mark.thorough
 @given(outlines(), seeds)
 def test_slacks_are_the_ways_to_the_ends(workpiece: Workpiece, seed: int) -> None:
     """On a face moved out by an offset, also past its ends."""

@@ -37,6 +37,7 @@ def spanned(fixture: Fixture, most: float = HEIGHT) -> list[tuple[float, float]]
     return [(min(min(a for a, _ in own), most), min(max(b for _, b in own), most)) for own in faces]
 
 
+@pytest.mark.thorough
 def test_the_bands_of_the_faces_pass(result: Result) -> None:
     """Of a peg on one face and of one in a corner, which may press over both; of a thin part up to its top."""
     first = result[0]

@@ -153,6 +153,7 @@ def test_what_is_wrong_is_refuted_by_name(
     ]
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(5)
 @pytest.mark.parametrize(
     ("edit", "words"),

@@ -51,6 +51,7 @@ def test_a_part_that_is_never_held_has_a_note_that_follows(loop: Any, toolkit: F
         assert len(verify(evolve(result, notes=(note,))).faults) == 2
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize(
     ("loop", "toolkit", "asked"),

@@ -19,6 +19,7 @@ STEPPED = Workpiece.from_points(
 OBLONG = Workpiece.from_loops("oblong", [[[0, 0, 0], [50, 0, 1], [50, 20, 0], [0, 20, 1]]])
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("part", [rectangle(), ELL, TRIANGLE, DISC, STEPPED, OBLONG, rectangle(300, 60)])
 @pytest.mark.parametrize("stop", [None, "both"])
 def test_every_fixture_is_proven(part, stop):
@@ -26,6 +27,7 @@ def test_every_fixture_is_proven(part, stop):
     assert outcome.holds and outcome.proven == outcome.fixtures > 0, outcome.unproven[:2] or outcome.faults
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(6))
 def test_forces_are_those_of_the_other_method(seed):
     rng = np.random.default_rng(seed)
@@ -87,6 +89,7 @@ def forced(factor):
     return change
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -152,6 +155,7 @@ def written(tmp_path):
     return path
 
 
+@pytest.mark.thorough
 def test_file_is_read_back_and_verified(written, tmp_path):
     result = workhold.open(written)
     again = tmp_path / "again.json"
@@ -161,6 +165,7 @@ def test_file_is_read_back_and_verified(written, tmp_path):
     assert workhold.verify(written, complete=True).holds
 
 
+@pytest.mark.thorough
 def test_search_sees_what_a_file_leaves_out(written):
     data = json.loads(written.read_text())
     del data["fixtures"][-1]
@@ -172,6 +177,7 @@ def test_search_sees_what_a_file_leaves_out(written):
     assert any("does not list" in fault for fault in outcome.faults)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -190,6 +196,7 @@ def test_file_that_cannot_be_used_is_refused(written, change, words):
         workhold.open(written)
 
 
+@pytest.mark.thorough
 def test_pegs_in_a_file_of_flat_jaws_are_refused(written):
     data = json.loads(written.read_text())
     data["fixtures"] = [{"type": "I", "pegs": [], "pose": {"theta_deg": 0, "x": 0, "y": 0}}]
@@ -200,6 +207,7 @@ def test_pegs_in_a_file_of_flat_jaws_are_refused(written):
             read(written)
 
 
+@pytest.mark.thorough
 def test_spreadsheet_has_a_row_for_each_and_columns_are_refused(tmp_path):
     result = held(loads=LOADS)
     workhold.save(result, tmp_path / "r.csv")
@@ -209,6 +217,7 @@ def test_spreadsheet_has_a_row_for_each_and_columns_are_refused(tmp_path):
         workhold.save(result, tmp_path / "r.npz")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("key", ["grip", "contact_area", "slip_reserve", "safety_reached"])
 def test_figure_changed_in_a_file_is_refuted(key, tmp_path):
     result = held(loads=LOADS, jaw_force=5000, toolkit=vise(max_force=9000))

@@ -22,6 +22,7 @@ PLATE = StrapPlate(20, 3, 8, 6)
 RAISED = StrapPlate(20, 3, 8, 6, straps=2, over="supports", supports={"pad_radius": 5, "height": 12})
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("part", "plate", "asked"),
     [
@@ -107,6 +108,7 @@ def overlap_tips(fixture):
     fixture["straps"][1]["at"] = [fixture["straps"][0]["at"][0] + 5.0, fixture["straps"][0]["at"][1]]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "fault",
     [
@@ -174,6 +176,7 @@ def spare_support(fixture):
     return next(k for k, one in enumerate(fixture["supports"]) if one not in over)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "fault",
     [
@@ -218,6 +221,7 @@ def cut(request, program):
     return workhold.design(BLOCK, plate, thickness=25, loads=LOADS[:1], **asked)
 
 
+@pytest.mark.thorough
 def test_a_program_is_passed_by_locators_and_straps_and_held(cut, tmp_path):
     """The walk along its moves, and loads of its tools, show it in another way."""
     outcome = verify(cut)
@@ -250,6 +254,7 @@ def leave_program_out(fixture):
     del fixture["program_force"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("fault", "words"),
     [
@@ -269,6 +274,7 @@ def test_a_fault_with_a_program_is_seen(cut, tmp_path, fault, words):
     assert [one.index for one in outcome.unproven] == [0] and words in str(outcome.unproven[0].reason)
 
 
+@pytest.mark.thorough
 def test_lower_straps_find_more_places_beside_a_program(program):
     """Rapid moves 70 mm above the part are in the way of straps that reach so high."""
     counts = []
@@ -281,6 +287,7 @@ def test_lower_straps_find_more_places_beside_a_program(program):
     assert counts[0] >= counts[1] > counts[2]
 
 
+@pytest.mark.thorough
 def test_a_seat_listed_twice_and_a_wrong_order_are_seen(written, tmp_path):
     data = json.loads(written.read_text())
     data["fixtures"][5] = data["fixtures"][4]
@@ -293,6 +300,7 @@ def test_a_seat_listed_twice_and_a_wrong_order_are_seen(written, tmp_path):
     assert any("better than the one before" in fault for fault in verify_file(path).faults)
 
 
+@pytest.mark.thorough
 def test_a_complete_verification_finds_what_is_missing_and_better_straps(written, tmp_path):
     """Answering the query again compares seats, counts and the best force."""
     assert workhold.verify(workhold.open(written)).holds

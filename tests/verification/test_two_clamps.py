@@ -280,6 +280,7 @@ def test_a_pair_left_out_of_all_is_missed(results: dict[str, Result]) -> None:
     assert len(faults) == 1 and "pairs of clamps at the seat of fixture" in faults[0]
 
 
+@pytest.mark.thorough
 def test_another_pair_of_the_seat_is_not_the_best(results: dict[str, Result]) -> None:
     """Each pair of a seat in place of its best: proven just where it is as good."""
     best, every = results["best"], results["all"]

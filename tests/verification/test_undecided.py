@@ -144,6 +144,7 @@ def test_pegs_at_both_ends_may_miss_by_what_they_move_against_each_other(farther
     assert (faults_of([entry], query) == []) == real
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

@@ -36,6 +36,7 @@ def job(server: RunningServer) -> str:
     return server.done(asked(), "/api/families")
 
 
+@pytest.mark.thorough
 def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> None:
     state = server.client.get(job).json()
     assert (state["kind"], state["state"], state["fraction"], state["complete"]) == (
@@ -63,6 +64,7 @@ def test_the_curve_is_that_of_the_program(server: RunningServer, job: str) -> No
     assert told["curve"] == json.loads(format_family_json(family))["family"]["curve"]
 
 
+@pytest.mark.thorough
 def test_curve_and_sheets_are_made(server: RunningServer, job: str) -> None:
     curve = server.client.get(f"{job}/family/curve.svg", params={"setups": 2})
     assert curve.headers["content-type"].startswith("image/svg+xml") and "3 parts" in curve.text
@@ -81,6 +83,7 @@ def test_curve_and_sheets_are_made(server: RunningServer, job: str) -> None:
     assert paper.content.startswith(b"%PDF") and "attachment" in paper.headers["content-disposition"]
 
 
+@pytest.mark.thorough
 def test_what_cannot_be_is_told(server: RunningServer, job: str) -> None:
     client = server.client
     for body in (
@@ -112,6 +115,7 @@ def test_a_family_is_stopped(server: RunningServer) -> None:
     assert "ended without a result" in server.client.get(f"{url}/family").json()["error"]
 
 
+@pytest.mark.thorough
 def test_parts_of_one_name_are_told_apart(server: RunningServer) -> None:
     url = server.done(asked(workpieces=[forms()[0], forms()[0]]), "/api/families")
     answer = server.client.get(f"{url}/family").json()

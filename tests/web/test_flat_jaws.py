@@ -30,6 +30,7 @@ def job(server: RunningServer) -> str:
     return server.done(ASKED)
 
 
+@pytest.mark.thorough
 def test_fixtures_are_listed_with_what_the_jaws_touch(server: RunningServer, job: str) -> None:
     state = server.client.get(job).json()
     assert state["found"] == 8 and state["complete"]
@@ -39,6 +40,7 @@ def test_fixtures_are_listed_with_what_the_jaws_touch(server: RunningServer, job
     assert rows[0]["quality"]["clamp_needed"] == max(rows[0]["hold"]["clamp_needed_each"]) > 0
 
 
+@pytest.mark.thorough
 def test_fixture_is_drawn_and_has_a_sheet(server: RunningServer, job: str) -> None:
     answer = server.client.get(f"{job}/fixtures/1")
     assert answer.status_code == 200, answer.text
@@ -62,6 +64,7 @@ def test_presets_and_their_fields_are_there(server: RunningServer) -> None:
     )
 
 
+@pytest.mark.thorough
 def test_raw_block_is_asked_for_and_described(server: RunningServer) -> None:
     asked = {**ASKED, "raw": {"side": 3, "top": 2, "bottom": 5}}
     job = server.done(asked)
@@ -72,6 +75,7 @@ def test_raw_block_is_asked_for_and_described(server: RunningServer) -> None:
     assert wrong.status_code == 400 and "a raw block has no 'left'" in wrong.text
 
 
+@pytest.mark.thorough
 def test_drill_that_comes_through_is_told_with_what_it_passes(server: RunningServer) -> None:
     text = "G21 G90\nT1 M6\nS2000 M3\nG0 X20. Y6. Z10.\nG81 X20. Y6. Z-28. R2. F200\nG80\nM30\n"
     program = {"name": "drill.nc", "text": text, "tools": {"name": "t.csv", "text": "tool,diameter\n1,6\n"}}

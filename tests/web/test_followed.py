@@ -33,6 +33,7 @@ def events(server: RunningServer, url: str, seen: str | None = None) -> list[tup
     ]
 
 
+@pytest.mark.thorough
 def test_events_go_on_where_they_were_left(server: RunningServer) -> None:
     """What was seen is not told again; after the last one there is nothing more to connect for."""
     url = server.done(request())
@@ -43,6 +44,7 @@ def test_events_go_on_where_they_were_left(server: RunningServer) -> None:
     assert (last.status_code, last.content) == (204, b"")
 
 
+@pytest.mark.thorough
 def test_events_of_a_running_job_wait_for_a_change(server: RunningServer) -> None:
     """Whoever has seen the present state is told the next one first."""
     url = server.submit(LONG)
@@ -57,6 +59,7 @@ def test_events_of_a_running_job_wait_for_a_change(server: RunningServer) -> Non
     server.client.delete(url)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", ["jobs", "explore"])
 def test_a_job_that_is_left_stops_where_that_was_asked(impatient: RunningServer, path: str) -> None:
     asked = LONG if path == "jobs" else {"workpiece": LONG["workpiece"], "toolkits": [LONG["toolkit"]]}
@@ -68,6 +71,7 @@ def test_a_job_that_is_left_stops_where_that_was_asked(impatient: RunningServer,
     assert impatient.client.get(url).json()["state"] == "cancelled"
 
 
+@pytest.mark.thorough
 def test_a_job_that_waits_and_is_left_never_begins(impatient: RunningServer) -> None:
     first = impatient.submit(LONG)
     url = impatient.submit(LONG, "/api/v1/jobs?when_left=cancel")
@@ -103,6 +107,7 @@ def test_a_job_that_is_followed_or_asked_for_goes_on(impatient: RunningServer) -
     impatient.client.delete(url)
 
 
+@pytest.mark.thorough
 def test_a_job_is_kept_unless_that_was_asked(impatient: RunningServer) -> None:
     kept, left = impatient.submit(LONG), impatient.submit(LONG, "/api/v1/jobs?when_left=cancel")
     jobs = impatient.state.jobs.by_name

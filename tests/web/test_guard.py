@@ -13,6 +13,7 @@ from test_parts import refused
 from workhold.web.serve import list_hosts
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "path", ["/", "/api/about", "/api/none", "/static/none.js", "/api/openapi.json", "/api/jobs/x"]
 )
@@ -54,6 +55,7 @@ def test_a_server_for_all_addresses_is_called_by_numbers_and_given_names_only() 
     assert list_hosts("shop.example", []).knows("shop.example:80")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "headers",
     [

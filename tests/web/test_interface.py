@@ -92,6 +92,7 @@ def test_examples_are_answered_as_they_say(server: RunningServer, names: dict[st
         assert not holds(answer.json(), {"no such key": None} if isinstance(example.answer, dict) else [None])
 
 
+@pytest.mark.thorough
 def test_the_example_of_an_event_is_read_as_one(server: RunningServer, names: dict[str, str]) -> None:
     """Its lines have the names of those that are sent, and its data is part of what they tell."""
     example = EXAMPLES["GET /api/v1/jobs/{name}/events"]
@@ -104,6 +105,7 @@ def test_the_example_of_an_event_is_read_as_one(server: RunningServer, names: di
     assert holds(json.loads(told["data"]), json.loads(shown["data"]))
 
 
+@pytest.mark.thorough
 def test_a_job_of_an_example_is_deleted(server: RunningServer, names: dict[str, str]) -> None:
     gone = server.done(request())
     answer = asked(
@@ -185,6 +187,7 @@ def test_answers_have_the_shapes_that_are_described(server: RunningServer, names
     assert ErrorAnswer.model_validate(server.client.get("/api/v1/none").json()).place is None
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("name", OPERATIONS)
 def test_the_newest_version_is_at_the_address_without_one(server: RunningServer, name: str) -> None:
@@ -198,6 +201,7 @@ def test_the_newest_version_is_at_the_address_without_one(server: RunningServer,
     assert "There is nothing at this address" not in answers[0].text
 
 
+@pytest.mark.thorough
 def test_addresses_in_answers_are_of_the_version_that_was_asked(server: RunningServer) -> None:
     for base in ("/api", "/api/v1"):
         url = server.submit(request(), f"{base}/jobs")
@@ -207,6 +211,7 @@ def test_addresses_in_answers_are_of_the_version_that_was_asked(server: RunningS
     assert server.client.get(url).json() == server.client.get(url.replace("/api/v1/", "/api/")).json()
 
 
+@pytest.mark.thorough
 def test_a_file_may_be_as_large_at_each_version(server: RunningServer) -> None:
     """More than other requests may be, which only addresses of files take."""
     large = b"<svg>" + b" " * (server.state.limits.request_bytes + 1)

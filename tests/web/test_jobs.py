@@ -69,6 +69,7 @@ def test_a_job_finds_what_the_program_finds(server: RunningServer, job: str, res
         assert row["quality"] == pytest.approx(dict(fixture.quality))
 
 
+@pytest.mark.thorough
 def test_downloads_are_the_files_the_program_writes(server: RunningServer, job: str, result: Result) -> None:
     for ending, text_of in (("json", write_result_text), ("csv", write_result_csv)):
         answer = server.client.get(f"{job}/result.{ending}")
@@ -190,6 +191,7 @@ def test_loads_are_answered_as_by_the_program(server: RunningServer, job: str, r
     assert told["needed_with_friction"] == pytest.approx(case.needed_with_friction)
 
 
+@pytest.mark.thorough
 def test_those_that_resist_best_are_first_of_a_search_ranked_by_the_reaction(
     server: RunningServer, job: str
 ) -> None:
@@ -216,6 +218,7 @@ def test_loads_that_are_none_are_refused(server: RunningServer, job: str, body: 
         refused(server.client.post(f"{job}/resist", json=body))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("kind", "start", "content_type"),
     [
@@ -234,6 +237,7 @@ def test_papers_are_made_and_the_same_each_time(
     assert server.client.get(f"{job}/fixtures/2/{kind}").content == answer.content
 
 
+@pytest.mark.thorough
 def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningServer, job: str) -> None:
     """A force pushed on the page, the jaw force, what the jaw is, thickness, dowel: all stand on the sheet."""
     load = {
@@ -279,6 +283,7 @@ def test_the_sheet_has_the_loads_jaw_and_sizes_of_its_address(server: RunningSer
     )
 
 
+@pytest.mark.thorough
 def test_warnings_are_the_sentences_of_the_sheet(server: RunningServer, job: str) -> None:
     """Every fixture's sheet has them and no others; a load too large for the jaw force adds one."""
     load = json.dumps([{**LOAD, "force": 5000.0}])
@@ -372,6 +377,7 @@ def test_searches_that_cannot_be_are_refused_before_they_begin(
     assert len(server.state.jobs.by_name) == before
 
 
+@pytest.mark.thorough
 def test_no_fixture_is_explained(server: RunningServer, job: str) -> None:
     url = server.done(
         {
@@ -387,6 +393,7 @@ def test_no_fixture_is_explained(server: RunningServer, job: str) -> None:
     refused(server.client.get(f"{job}/explanation"), 409)
 
 
+@pytest.mark.thorough
 def test_all_kinds_are_compared_and_others_refused(server: RunningServer) -> None:
     """A plate and a fence have fields of their own; those of a vise they do not take, whatever name is given."""
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "title": "plate"}
@@ -423,6 +430,7 @@ def test_toolkits_are_compared(server: RunningServer) -> None:
     refused(server.client.get(f"{url}/fixtures/1"), 409)
 
 
+@pytest.mark.thorough
 def test_fixtures_show_while_the_search_runs_and_stay_when_it_is_cancelled(server: RunningServer) -> None:
     url = server.submit(LONG)
     running = server.state_when(url, lambda state: state["revision"] > 0)
@@ -438,6 +446,7 @@ def test_fixtures_show_while_the_search_runs_and_stay_when_it_is_cancelled(serve
     assert rows(server, url, limit=5)
 
 
+@pytest.mark.thorough
 def test_a_deleted_job_is_gone_and_its_worker_free(server: RunningServer) -> None:
     url = server.submit(LONG)
     server.state_when(url, lambda state: state["state"] == "running")
@@ -458,6 +467,7 @@ def test_a_deleted_job_is_gone_and_its_worker_free(server: RunningServer) -> Non
     assert server.outcome(waiting)["state"] == "done"
 
 
+@pytest.mark.thorough
 def test_one_that_waits_can_be_deleted(server: RunningServer) -> None:
     first, second = server.submit(LONG), server.submit(LONG)
     server.client.delete(second)
@@ -466,6 +476,7 @@ def test_one_that_waits_can_be_deleted(server: RunningServer) -> None:
     assert server.outcome(server.submit(request()))["state"] == "done"
 
 
+@pytest.mark.thorough
 def test_names_of_jobs_are_long_and_never_the_same(server: RunningServer) -> None:
     names = {server.submit(request()).rpartition("/")[2] for _ in range(5)}
     assert len(names) == 5 and all(len(name) >= 22 for name in names)

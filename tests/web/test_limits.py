@@ -46,6 +46,7 @@ def tidy(small: RunningServer) -> Iterator[None]:
     small.wait_until(lambda: not small.state.searchers.busy)
 
 
+@pytest.mark.thorough
 def test_large_files_and_requests_are_refused(small: RunningServer) -> None:
     refused(small.client.post("/api/parts", content=bytes(2_001)), 413)
     refused(small.client.post("/api/jobs", content=bytes(20_001)), 413)
@@ -71,6 +72,7 @@ def test_files_that_arrive_slowly_keep_nobody_from_anything_else(small: RunningS
     small.wait_until(lambda: arriving(small) == 0)
 
 
+@pytest.mark.thorough
 def test_too_many_searches_of_one_address_are_refused(small: RunningServer) -> None:
     for _ in range(3):
         small.submit(LONG)
@@ -87,6 +89,7 @@ def test_only_the_best_fixtures_are_kept_and_it_is_said(small: RunningServer) ->
     assert small.client.get(f"{url}/fixtures").json()["total"] == 100
 
 
+@pytest.mark.thorough
 def test_the_longest_unused_go_when_too_much_is_kept(small: RunningServer) -> None:
     urls = [small.done(request()) for _ in range(3)]
     size = small.state.jobs.by_name[urls[-1].rpartition("/")[2]].size
@@ -179,6 +182,7 @@ def hasty() -> Iterator[RunningServer]:
         yield running
 
 
+@pytest.mark.thorough
 def test_a_slow_client_is_let_go(hasty: RunningServer) -> None:
     with socket.create_connection(hasty.address, timeout=PATIENCE) as slow:
         slow.sendall(b"POST /api/parts HTTP/1.1\r\nHost: localhost\r\nContent-Length: 1000\r\n\r\n<svg")
@@ -202,6 +206,7 @@ def test_a_search_that_needs_too_much_memory_fails_in_a_sentence(strict: Running
     assert strict.outcome(strict.submit(request()))["state"] == "done"
 
 
+@pytest.mark.thorough
 def test_nothing_is_kept_after_the_life_of_a_search(small: RunningServer) -> None:
     """Which begins anew each time that it is asked for; room is made for every search."""
     url, life = small.done(request()), small.state.limits.life_seconds

@@ -54,6 +54,7 @@ def test_a_page_of_a_named_site_searches(shared: RunningServer) -> None:
     assert shared.client.delete(url, headers=headers).status_code == 204
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "origin", ["https://evil.example", "http://shop.example", f"{SHOP}:444", f"{SHOP}.evil.example", "null"]
 )

@@ -59,6 +59,7 @@ def test_the_part_is_held_as_the_program_holds_it(
     assert server.client.get(f"{url}/fixtures/1").status_code == 200
 
 
+@pytest.mark.thorough
 def test_a_part_that_is_checked_keeps_its_outlines(server: RunningServer, part: dict[str, Any]) -> None:
     """A link holds them, and gets them back."""
     told = server.client.post("/api/parts/check", json=part).json()
@@ -66,6 +67,7 @@ def test_a_part_that_is_checked_keeps_its_outlines(server: RunningServer, part: 
     assert min(told["own_faces"]["clamp"]) == len(told["segments"])
 
 
+@pytest.mark.thorough
 def test_what_cannot_be_is_refused(server: RunningServer, block: Path, part: dict[str, Any]) -> None:
     """Heights that are none, or where nothing is; a part without its outlines, with others, or with too many."""
     for heights, words in (

@@ -40,6 +40,7 @@ def test_about_tells_the_limits_in_force(server: RunningServer) -> None:
     assert isinstance(about["step"], bool)
 
 
+@pytest.mark.thorough
 def test_every_builtin_part_is_listed_and_read(server: RunningServer) -> None:
     listed = server.client.get("/api/parts").json()
     assert [part["name"] for part in listed] == [part.name for part in list_builtin_parts()]
@@ -51,6 +52,7 @@ def test_every_builtin_part_is_listed_and_read(server: RunningServer) -> None:
         assert [face["number"] for face in answer["faces"]] == [face.number for face in workpiece.faces]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "name", ["nothing", "..%2F..%2Fetc%2Fpasswd", "%2Fetc%2Fpasswd", "widget.json", "con%00"]
 )
@@ -80,6 +82,7 @@ def test_a_drawing_becomes_the_part_the_program_reads(server: RunningServer) -> 
     assert again.json()["segments"] == answer["segments"]
 
 
+@pytest.mark.thorough
 def test_units_and_parts_of_a_drawing_can_be_chosen(server: RunningServer) -> None:
     svg = b'<svg xmlns="http://www.w3.org/2000/svg"><path d="M0 0H20V10H0Z"/><path d="M50 0H60V5H50Z"/></svg>'
     wide = upload(server, svg, "two.svg", unit="inch").json()
@@ -102,6 +105,7 @@ def test_a_files_name_is_never_a_path(server: RunningServer, name: str) -> None:
     assert "/" not in answer.json()["name"] and "\\" not in answer.json()["name"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("content", "name"),
     [
@@ -195,6 +199,7 @@ def survey(server: RunningServer, content: bytes, name: str, **query: Any) -> di
     return told
 
 
+@pytest.mark.thorough
 def test_a_survey_has_the_part_or_what_is_asked(server: RunningServer) -> None:
     """The same part as reading gives, or the sentence and its question, with all that is drawn."""
     told = survey(server, BRACKET.read_bytes(), "bracket.dxf")
@@ -210,6 +215,7 @@ def test_a_survey_has_the_part_or_what_is_asked(server: RunningServer) -> None:
     assert [(part["number"], part["holes"]) for part in told["parts"]] == [(1, 0), (2, 0)]
 
 
+@pytest.mark.thorough
 def test_a_survey_tells_what_a_drawing_is_in_pixels(server: RunningServer) -> None:
     """Only where there are pixels, and its unit is asked; the answers are units as any other."""
     svg = b'<svg xmlns="http://www.w3.org/2000/svg" width="60px" viewBox="0 0 30 9"><path d="M1 1H21V8H1Z"/></svg>'
@@ -224,6 +230,7 @@ def test_a_survey_tells_what_a_drawing_is_in_pixels(server: RunningServer) -> No
     assert survey(server, BRACKET.read_bytes(), "bracket.dxf")["pixels"] is None
 
 
+@pytest.mark.thorough
 def test_gaps_are_joined_and_layers_chosen_as_asked(server: RunningServer) -> None:
     """Over HTTP, as in a file that leaves them open."""
     lines = ["M0 0H20", "M20.3 0V10", "M20 10H0V0"]

@@ -52,6 +52,7 @@ def test_a_start_and_thousandths_are_taken(server: RunningServer) -> None:
     assert told["box"] == [[1, 2, 11], [40, 2, 42]] and told["moves"] == 3
 
 
+@pytest.mark.thorough
 def test_a_search_keeps_clear_of_it_and_names_the_nearest_move(server: RunningServer) -> None:
     """The list is that of the program's own query, and a fixture says which line comes nearest, and where."""
     url = server.done(SEARCH)
@@ -83,12 +84,14 @@ def test_a_preference_counts_the_forces_of_the_tools(server: RunningServer) -> N
     assert "load_reaction" in ranked["ranking"] and "load_reaction" not in plain["ranking"]
 
 
+@pytest.mark.thorough
 def test_without_a_program_nothing_is_passed(server: RunningServer) -> None:
     """The place for it is empty."""
     url = server.done({key: value for key, value in SEARCH.items() if key != "program"})
     assert server.client.get(f"{url}/fixtures/1").json()["passing"] is None
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -142,6 +145,7 @@ def test_the_description_names_the_form(server: RunningServer) -> None:
     assert "program" in forms["JobForm"]["properties"] and "program" in forms["ExploreForm"]["properties"]
 
 
+@pytest.mark.thorough
 def test_forces_act_where_tools_meet_the_stock(server: RunningServer) -> None:
     """As the page's fields give them: what is asked for, and what of which line does."""
     asked = {"cutting": {"cutting_force": 500}, "stock": {"side": 0, "top": 1, "shape": "block"}}

@@ -57,6 +57,7 @@ def put(result: Result, turn: float, dx: float, dy: float, turned_over: bool = F
     }
 
 
+@pytest.mark.thorough
 def test_figures_and_sentences_are_the_programs(server: RunningServer, place: str, told: Seating) -> None:
     answer = server.client.get(f"{place}/seating").json()
     fields = told.to_fields()
@@ -96,6 +97,7 @@ def test_a_search_tells_the_seating_of_its_first_fixtures(server: RunningServer,
         )
 
 
+@pytest.mark.thorough
 def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) -> None:
     """In the unit asked for, on the sheet too; a search may ask for it, and no closing is played."""
     plate = {"kind": "translating-clamp", "pitch": [20, 20], "peg_radius": 3, "clamps": 2}
@@ -213,6 +215,7 @@ def test_few_seatings_are_kept_of_a_job(server: RunningServer, place: str, told:
     assert len(job.seatings) < 100 and (-1, 99) in job.seatings and (-1, 0) not in job.seatings
 
 
+@pytest.mark.thorough
 def test_the_sheet_of_the_page_tells_it_when_asked(server: RunningServer, place: str) -> None:
     assert (
         "Does the part end up there?"
@@ -221,6 +224,7 @@ def test_the_sheet_of_the_page_tells_it_when_asked(server: RunningServer, place:
     assert "Does the part end up there?" not in server.client.get(f"{place}/sheet.svg").text
 
 
+@pytest.mark.thorough
 def test_a_closing_that_nobody_waits_for_is_not_begun(
     server: RunningServer, place: str, result: Result
 ) -> None:

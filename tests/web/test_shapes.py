@@ -59,6 +59,7 @@ def volume(body: ReadBody) -> float:
     return float(np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum()) / 6
 
 
+@pytest.mark.thorough
 def test_the_part_is_a_prism_until_its_file_is_sent(server: RunningServer, job: str, file: Path) -> None:
     """Then it has the volume of the file's solid; all other bodies are as before, and so are both files."""
     before = bodies(server, job)
@@ -76,6 +77,7 @@ def test_the_part_is_a_prism_until_its_file_is_sent(server: RunningServer, job: 
     assert server.client.get(f"{job}/fixtures/1/setup.step").content != before_step
 
 
+@pytest.mark.thorough
 def test_the_second_side_has_a_shape_of_its_own(server: RunningServer, file: Path) -> None:
     """The same file turned over: the boss reaches down to the plate."""
     url = server.done(request(workpiece=uploaded(server, file, "-z"), toolkit=PLATE))
@@ -95,6 +97,7 @@ def test_it_counts_as_kept(server: RunningServer, job: str, file: Path) -> None:
     assert with_shape - held.size > 10_000
 
 
+@pytest.mark.thorough
 def test_what_has_no_such_shape_is_refused(
     server: RunningServer, job: str, file: Path, tmp_path: Path
 ) -> None:

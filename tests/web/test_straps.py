@@ -49,6 +49,7 @@ def test_seat_is_drawn_and_has_a_sheet(server: RunningServer, job: str) -> None:
         assert server.client.get(f"{job}/{name}").status_code == 200
 
 
+@pytest.mark.thorough
 def test_straps_over_supports_pass_a_program(server: RunningServer) -> None:
     """The answer names the supports, and says what the tools ask of each strap, with the line."""
     text = "G21 G90\nG0 X30. Y20. Z70.\nT1 M6\nZ5.\nG1 Z-3. F200\nX70. F600\nG0 Z70.\nM30\n"
@@ -75,6 +76,7 @@ def test_straps_over_supports_pass_a_program(server: RunningServer) -> None:
         assert server.client.get(f"{job}/fixtures/1/{ending}").status_code == 200
 
 
+@pytest.mark.thorough
 def test_reason_is_told_where_there_is_none(server: RunningServer) -> None:
     none = server.done({**ASKED, "loads": [], "restrictions": {"avoid": [0, 1, 2]}})
     assert server.client.get(none).json()["found"] == 0

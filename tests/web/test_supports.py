@@ -95,6 +95,7 @@ def test_without_loads_the_arm_decides(server: RunningServer, place: str) -> Non
     assert answer["jaw_force"] is None and not answer["with_loads"]
 
 
+@pytest.mark.thorough
 def test_keep_outs_and_a_point_are_kept(server: RunningServer, place: str) -> None:
     """No pad reaches into a zone below, the clamp into none above; a point asked for is that of the clamp."""
     whole = told(server, place, loads=[])
@@ -127,6 +128,7 @@ def middle(body: ReadBody) -> NDArray[np.float64]:
     return np.asarray((flat.min(axis=0) + flat.max(axis=0)) / 2)
 
 
+@pytest.mark.thorough
 def test_chosen_supports_are_bodies(server: RunningServer, place: str) -> None:
     """The file in three dimensions has the pads of the set that is asked for under the part, and the clamp on it."""
     form = {"thickness": 12.0, "loads": []}
@@ -196,6 +198,7 @@ def test_the_description_has_an_example(server: RunningServer, place: str) -> No
     assert server.client.post(f"{place}/supports", json=example).json()["sets"]
 
 
+@pytest.mark.thorough
 def test_who_hangs_up_is_not_worked_for(server: RunningServer, place: str) -> None:
     """A task whose client is gone is stopped, here with its deaf worker, and the next one is served."""
     text = json.dumps({"thickness": 12.0, "loads": [LOAD]})
@@ -210,6 +213,7 @@ def test_who_hangs_up_is_not_worked_for(server: RunningServer, place: str) -> No
     assert told(server, place, loads=[])["sets"]
 
 
+@pytest.mark.thorough
 def test_the_sheet_carries_the_chosen_supports(server: RunningServer, place: str) -> None:
     """The holes in which the set is built and its clamp force; without the wish there are none."""
     form = {"thickness": 12.0, "loads": [LOAD]}

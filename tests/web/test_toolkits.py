@@ -129,6 +129,7 @@ def test_fixtures_of_a_plate_are_told_apart_by_their_direction(server: RunningSe
     assert server.client.get(f"{url}/fixtures", params={"type": "I"}).status_code == 400
 
 
+@pytest.mark.thorough
 def test_what_would_help_says_which_fields_change(server: RunningServer) -> None:
     """So that the page can make any change of any toolkit."""
     vise = {**PLATE, "columns": 2, "rows": 2, "directions": ["-x"]}
@@ -156,6 +157,7 @@ def test_directions_of_the_page_are_those_of_the_plate() -> None:
     assert {tuple(pair) for pair in two} == set(every.pushes) and len(two) == 6
 
 
+@pytest.mark.thorough
 def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer) -> None:
     """The nearest miss of a part that no clamp of this stroke reaches has neither a body nor a length to draw."""
     vise = {**PLATE, "directions": ["-x"], "travel": [300, 301], "columns": 12, "rows": 8}
@@ -167,6 +169,7 @@ def test_a_clamp_that_reaches_no_hole_is_told_by_its_line(server: RunningServer)
     assert nearest["row"]["settings"][0]["length"] < 300
 
 
+@pytest.mark.thorough
 def test_a_fence_is_answered_with_its_bar_and_the_contacts_on_it(server: RunningServer) -> None:
     """The ends of the contact are numbered among the pegs, after the locator; a corner tells that it is one."""
     shape = {

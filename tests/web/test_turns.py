@@ -181,6 +181,7 @@ def is_closed(one: socket.socket) -> bool:
         return True
 
 
+@pytest.mark.thorough
 def test_a_proxy_is_believed_only_when_it_is_trusted(shared: RunningServer, other: httpx.Client) -> None:
     """The trusted proxy's word tells one client from another; what anybody else says of itself counts for nothing."""
     for client, said, counted in ((shared.client, "10.1.2.3", "10.1.2.3"), (other, "10.1.2.4", OTHER)):

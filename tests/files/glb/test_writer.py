@@ -99,6 +99,7 @@ def test_pegs_and_clamps_touch_the_part_and_plates_stay_apart(name: str) -> None
     assert len(plates) == 1 or plates[0].distance(plates[1]) > 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_what_moves_says_where_to_when_opened(name: str) -> None:
     """Moved that way pegs and clamps enter nothing, and leave the part; moved the other way they enter it."""

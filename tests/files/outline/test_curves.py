@@ -102,6 +102,7 @@ def test_ellipses_of_equal_axes_are_arcs(tmp_path: Path, extrusion: tuple[float,
     assert part.bounds == pytest.approx((-10, min(0, 10 * side), 10, max(0, 10 * side)), abs=1e-9)
 
 
+@pytest.mark.thorough
 def test_an_elliptical_slot_is_refused_and_fitted(tmp_path: Path) -> None:
     """A slot whose ends are half ellipses 20 high and 6 wide: refused with a fit that does, and read with it."""
 
@@ -177,6 +178,7 @@ def polygon_area(points: list[tuple[float, float]]) -> float:
     return abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1))) / 2
 
 
+@pytest.mark.thorough
 def test_a_closed_spline_of_fit_points_has_no_corner(tmp_path: Path) -> None:
     """Points on a circle make a curve near it, the same wherever it begins."""
     areas = []

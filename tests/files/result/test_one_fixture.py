@@ -64,6 +64,7 @@ def first_line(lines: list[bytes]) -> int:
     return next(k for k, line in enumerate(lines) if line.startswith(b'"fixtures"')) + 1
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", ["r.json", "other.json", "r.npz"])
 def test_it_is_the_one_of_the_whole_file(kind: str, name: str, made: Any) -> None:
@@ -89,6 +90,7 @@ def test_same_holes_are_some(made: Any) -> None:
     assert any(fixture.listing.others for fixture in made("vise")[0])
 
 
+@pytest.mark.thorough
 def test_the_others_are_read_once_they_are_asked_for(made: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     whole, folder = made("vise")
     rows = list[int]()
@@ -107,6 +109,7 @@ def test_a_fixture_that_there_is_not_is_refused(made: Any) -> None:
             read_one(folder / name, 9999)
 
 
+@pytest.mark.thorough
 def test_a_damaged_file_is_refused(document: Any) -> None:
     """For its head, the fixture, and how many there are; the place is that in the file."""
 

@@ -119,6 +119,7 @@ def test_no_negative_zero_and_no_full_turn_is_written() -> None:
     assert "-0.0" not in stream.getvalue().replace("-0.0]", "")
 
 
+@pytest.mark.thorough
 def test_fixtures_become_objects_a_block_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
     sizes: list[int] = []
     take = FixtureTable.take

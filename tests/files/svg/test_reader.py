@@ -84,6 +84,7 @@ def test_circles_and_round_corners_are_arcs(tmp_path: Path) -> None:
     assert [len(loop) for loop in part.loops] == [8, 2, 2]
 
 
+@pytest.mark.thorough
 def test_a_rect_rounded_to_the_full_is_a_stadium(tmp_path: Path) -> None:
     """Radii are limited to half the side; sides that vanish leave no zero-length segment."""
     part = read_svg(tmp_path, '<rect width="60" height="40" ry="20"/>', MM).workpiece
@@ -177,6 +178,7 @@ def test_transform_functions(tmp_path: Path, text: str, factor: float) -> None:
     assert area(read_svg(tmp_path, body, unit="mm").workpiece) == pytest.approx(factor * (800 + 50 * pi))
 
 
+@pytest.mark.thorough
 def test_unequal_scales_turn_arcs_into_ellipses(tmp_path: Path) -> None:
     """Skewed lines are lines; skewed arcs, also those whose axes keep their lengths, need a fit."""
     body = '<g transform="skewX(20) scale(2 3)"><rect width="10" height="5"/></g>'

@@ -81,6 +81,7 @@ def test_material_is_on_the_left_of_every_segment(part):
         assert not is_inside(x + step * nx, y + step * ny, rows)
 
 
+@pytest.mark.thorough
 @settings(max_examples=40)
 @given(outlines(), seeds)
 def test_points_of_a_segment_have_distance_zero_and_offsets_their_offset(part, seed):

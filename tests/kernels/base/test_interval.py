@@ -6,6 +6,7 @@ from fractions import Fraction
 from math import cos, inf, nextafter, pi, sin
 from random import Random
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -59,6 +60,7 @@ def test_scaling_and_shifting_contain_the_exact_range(c, a):
     assert holds(ishift(c, a), e + p, e + q)
 
 
+@pytest.mark.thorough
 @given(intervals, intervals)
 def test_quotient_contains_the_exact_range(a, b):
     """[a] / [b] contains the exact range, and is everything when [b] contains 0."""
@@ -78,6 +80,7 @@ def test_root_contains_the_exact_range(a):
     assert low >= 0 and Fraction(low) ** 2 <= p and q <= Fraction(high) ** 2
 
 
+@pytest.mark.thorough
 @given(
     st.floats(-50, 50), st.one_of(st.floats(0, 1e-6), st.floats(0, 8)), st.lists(st.floats(0, 1), max_size=20)
 )
@@ -116,6 +119,7 @@ def test_bounds_are_tight():
             assert high - low <= 3e-14 * max(1.0, abs(low))
 
 
+@pytest.mark.thorough
 @given(intervals, intervals, intervals, intervals, st.lists(st.floats(0, 1), min_size=4, max_size=4))
 def test_products_of_vectors_contain_their_values(ax, ay, bx, by, places):
     """a . b and a x b for vectors anywhere in their boxes, in exact arithmetic."""

@@ -60,6 +60,7 @@ def test_nothing_to_build_with_is_one_sentence(elsewhere: Path, monkeypatch: pyt
         libraries.load_entry("base", "measure_winding")
 
 
+@pytest.mark.thorough
 def test_a_kernel_that_cannot_be_compiled_is_told(elsewhere: Path) -> None:
     """The last line of what its process said."""
     with pytest.raises(InputError, match=r"^The kernels could not be compiled: .*Error"):
@@ -84,6 +85,7 @@ def test_without_a_linker_an_object_file_is_loaded(elsewhere: Path, monkeypatch:
     assert callable(libraries.load_entry("base", "measure_winding"))
 
 
+@pytest.mark.thorough
 def test_a_build_that_is_cancelled_leaves_nothing(elsewhere: Path) -> None:
     cancel = Event()
     cancel.set()

@@ -94,6 +94,7 @@ def check_discs(exact: ExactChord, discs: list[tuple[float, float, float]], deta
         assert dot(away, away) <= arb(radius) * arb(radius), detail
 
 
+@pytest.mark.thorough
 @given(seeds, positions, depths, modes)
 def test_values_and_slopes_are_within_their_errors(seed, position, depth, mode):
     """|value - exact| <= told error, and the same for the slope; where no error is told, a disc holds the value."""
@@ -118,6 +119,7 @@ def test_values_and_slopes_are_within_their_errors(seed, position, depth, mode):
                 assert abs(difference(mode, a, value, expected[0])) <= error, detail
 
 
+@pytest.mark.thorough
 @given(seeds, positions, depths)
 def test_computed_contacts_are_off_their_features_by_no_more_than_the_blur(seed, position, depth):
     """The distances of a computed tail and head from the carriers of their features are within the backward error told."""

@@ -146,6 +146,7 @@ def center(a, b, curve, psi) -> tuple[float, float]:
     return compute_chord_state(a, b, curve, psi, cos(psi), sin(psi))[6:8]
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(2)
 @pytest.mark.parametrize("kinds", PAIRS)
 def test_center_motion_encloses_every_divided_difference_of_the_instant_centre(kinds):

@@ -168,6 +168,7 @@ def test_concentric_circles_turn_all_the_way():
     assert (covering(inside, np.linspace(0, 6, 50)) == 2).all()
 
 
+@pytest.mark.thorough
 def test_equal_circles_one_chord_apart_leave_out_only_a_sliver():
     """Their chord exists at |2 d sin(t / 2)| < 2 R about the coincidence, on either side of it but for 1e-12 rad."""
     radius, d = 5.0, 13.0

@@ -25,7 +25,7 @@ from chord_examples import (
 )
 from exact_chords import Point, exact_chord, exact_distance, exactly, minus
 from rounding import ROUNDED, Rounded, error_of
-from sharpness import Constant, changed, check_sharpness
+from sharpness import Constant, changed, check_sharpness, interpreted
 from strategies import random_row
 from workhold.conventions import EXACT
 from workhold.kernels.base.feature import is_shallow
@@ -295,8 +295,8 @@ def of_pair(form: Kernel) -> Kernel:
 def of_arcs(form: Kernel) -> Kernel:
     names = {
         "add_event": changed(intervals.add_event),
-        "are_one_chord_apart": intervals.are_one_chord_apart.py_func,
-        "find_touching_side": changed(coincidences.find_touching_side, is_shallow=is_shallow.py_func),
+        "are_one_chord_apart": interpreted(intervals.are_one_chord_apart),
+        "find_touching_side": changed(coincidences.find_touching_side, is_shallow=interpreted(is_shallow)),
     }
     return changed(
         intervals.add_arc_tangencies, add_gap=changed(form, **names, **ROUNDED), **names, **ROUNDED
@@ -343,7 +343,7 @@ def regular_rounded(random: Random, kernel: Kernel) -> float:
 
 ROUNDED_MOTION = changed(
     coincidences.compute_motion,
-    measure_from_coincidence=coincidences.measure_from_coincidence.py_func,
+    measure_from_coincidence=interpreted(coincidences.measure_from_coincidence),
     is_regular=changed(coincidences.is_regular, **ROUNDED),
     get_regular_radius=changed(coincidences.get_regular_radius, **ROUNDED),
     **ROUNDED,

@@ -129,6 +129,7 @@ def test_what_stretches_tell_holds_at_every_direction(seed):
             check_stretch(a, b, curve, lows[k], rows[k], random)
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(5)
 @pytest.mark.parametrize("make", SPECIAL)
 def test_what_stretches_tell_holds_in_special_positions(make):
@@ -144,6 +145,7 @@ def test_what_stretches_tell_holds_in_special_positions(make):
                 checked += sum(check_stretch(a, b, curve, low, row, random) for low, row in stretches)
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_stretches_follow_each_other_without_a_gap(seed):
     """The stretches of a curve begin at its low end, go on where the one before ends, and end at its high end; so do the
@@ -168,6 +170,7 @@ def test_stretches_follow_each_other_without_a_gap(seed):
         assert at == curve[TO]
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_stretches_tell_something(seed):
     """Away from the ends of a curve the speed is bounded, and by no more than a hundredfold of what it is."""
@@ -186,6 +189,7 @@ def test_stretches_tell_something(seed):
             assert row[SPEED] <= 100 * (most + 2 * d / (row[STRETCH_HIGH] - low))
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_the_size_of_the_turn_is_enclosed_over_any_range(seed):
     """|X| by the sides of a triangle, and X^3 P' over ranges of any width down to rounding, next to the ends too."""

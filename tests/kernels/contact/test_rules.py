@@ -19,6 +19,7 @@ from workhold.search.cells import run_blocks
 from workhold.search.toolkit_search import ToolkitSearch
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("count", [3, 4])
 def test_three_parallel_lines_are_seen(count: int) -> None:
     """Of three pegs all must touch such lines, of four any three; arcs never count."""

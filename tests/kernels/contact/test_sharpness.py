@@ -13,7 +13,7 @@ import pytest
 
 from contact_examples import held, limits
 from rounding import Rounded, error_of
-from sharpness import Constant, changed, check_sharpness
+from sharpness import Constant, changed, check_sharpness, interpreted
 from workhold.contact.curves import EVERYWHERE
 from workhold.conventions import GAP_SLACK
 from workhold.kernels.base.tables import Features
@@ -75,7 +75,7 @@ class Rows(list):  # type: ignore[type-arg]
         return list.__getitem__(self, place[0])[place[1]]
 
 
-ROUNDED_MINORS = changed(rules.write_minors, cross=rules.cross.py_func)
+ROUNDED_MINORS = changed(rules.write_minors, cross=interpreted(rules.cross))
 
 
 def needed(keeps: Callable[[float], bool]) -> float:

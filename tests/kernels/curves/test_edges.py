@@ -31,6 +31,7 @@ def written(*given: Any) -> np.ndarray:
     return pieces[:count]
 
 
+@pytest.mark.thorough
 def test_pieces_without_room_are_told() -> None:
     """Rather than written past the end."""
     features, table = random_table(Random(5))

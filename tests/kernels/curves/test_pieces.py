@@ -155,6 +155,7 @@ def test_values_at_the_ends_of_pieces_are_the_curves(mode):
     assert tangencies > 50
 
 
+@pytest.mark.thorough
 def test_two_branches_agree_at_their_tangency():
     """Where two branches meet their values agree within the errors told, which are small, so no crossing slips between."""
     random = Random(34)

@@ -52,6 +52,7 @@ def touches(a, b, d, s, alpha, slack):
     return on and off_carrier(b, head)[0] < 1e-9
 
 
+@pytest.mark.thorough
 def test_sliding_along_an_sliding_pair_keeps_both_contacts():
     """For every s in [from, to], tail a(s) and head a(s) + d (cos alpha, sin alpha) are on their features."""
     random = Random(21)
@@ -65,6 +66,7 @@ def test_sliding_along_an_sliding_pair_keeps_both_contacts():
     assert found > 300
 
 
+@pytest.mark.thorough
 def test_the_head_of_a_pair_in_place_is_as_far_off_as_it_may_be_turned():
     """Its disc holds the head of a tail at the rim of its own, at each orientation within reach of the pair's."""
     random, pegs = Random(22), np.zeros((2, PEG_LENGTH))

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 import ladders
 from exact_chords import exactly
+from sharpness import interpreted
 from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.kernels.contact.record import LARGEST_RADIUS, PSI, RECORD_LENGTH, SEPARATION, TAIL_X, TAIL_Y
 from workhold.kernels.proof import interval_newton as in_doubles
@@ -101,6 +102,7 @@ def test_roots_hold_the_solution_and_are_small() -> None:
                 assert np.abs(root[TAIL_X : TAIL_Y + 1] - z[1:3]).max() <= root[LARGEST_RADIUS] + 1e-14
 
 
+@pytest.mark.thorough
 def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without the variation of normals and moments over a part solutions are lost, and the comparison above sees it."""
 
@@ -121,8 +123,8 @@ def test_a_bound_that_is_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None
     left, _, right = np.linalg.svd(in_doubles.compute_jacobians(row, FEATURES, SETTING))
     frame = np.stack([left[0], right[0].T])
     roots, space = np.empty((4, RECORD_LENGTH)), in_doubles.make_newton_space()
-    found = in_doubles.find_solutions.py_func(row[0], FEATURES, SETTING, frame, space, roots)
+    found = interpreted(in_doubles.find_solutions)(row[0], FEATURES, SETTING, frame, space, roots)
     assert found > 0 and (np.abs(roots[:found, PSI] - fixture) <= roots[:found, 17] + 1e-15).any()
     monkeypatch.setattr(in_doubles, "write_variation", still)
-    found = in_doubles.find_solutions.py_func(row[0], FEATURES, SETTING, frame, space, roots)
+    found = interpreted(in_doubles.find_solutions)(row[0], FEATURES, SETTING, frame, space, roots)
     assert not (np.abs(roots[: max(found, 0), PSI] - fixture) <= roots[: max(found, 0), 17] + 1e-15).any()

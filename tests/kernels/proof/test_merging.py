@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,6 +12,7 @@ from workhold.kernels.proof.merging import merge_boxes
 BOX = st.tuples(*[st.integers(0, 6)] * 4, *[st.integers(0, 2)] * 4, st.booleans())
 
 
+@pytest.mark.thorough
 @given(st.lists(BOX, max_size=12))
 def test_boxes_join_the_one_before(boxes: list[tuple[int, ...]]) -> None:
     """Boxes that touch join where they may, and what they join grows; others stay as they are."""

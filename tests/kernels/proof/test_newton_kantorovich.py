@@ -128,6 +128,7 @@ def test_the_exact_solution_is_within_the_radius(seed: int, tilt: float) -> None
             assert away(contacts, start_at(contacts, [0.0] * 4)) <= radius
 
 
+@pytest.mark.thorough
 @given(seeds)
 def test_ordinary_contacts_have_a_small_certificate(seed: int) -> None:
     """The certificate is of use: most contacts in general position are known to 1e-11 mm."""

@@ -227,6 +227,7 @@ VARYING = [
 ]
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(5)
 @pytest.mark.parametrize("about", [False, True])
 @pytest.mark.parametrize("column", VARYING)

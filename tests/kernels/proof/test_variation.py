@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from chord_examples import arc_row, line_row
+from sharpness import interpreted
 from workhold.kernels.base.tables import Lattice, Limits, Setting
 from workhold.kernels.contact.record import FEATURES, LARGEST_RADIUS, PSI, RECORD_LENGTH
 from workhold.kernels.proof import interval_newton as in_doubles
@@ -65,7 +66,7 @@ def test_pegs_in_a_row_along_a_rounded_top_are_dropped_at_once(monkeypatch: pyte
     frame, roots = np.stack([left, right.T]), np.empty((4, RECORD_LENGTH))
     monkeypatch.setattr(in_doubles, "MOST_PARTS", 2)
     assert (
-        in_doubles.find_solutions.py_func(
+        interpreted(in_doubles.find_solutions)(
             row, features, SETTING, frame, in_doubles.make_newton_space(), roots
         )
         == 0

@@ -48,6 +48,7 @@ def cells_of(number):
     return boundary, curves, kept
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("number", range(3))
 def test_instant_centers_are_on_their_ray(number):
     """As far off as told, in about its direction, the first contact no farther from its place in the middle than told."""
@@ -64,6 +65,7 @@ def test_instant_centers_are_on_their_ray(number):
             assert hypot(s[0] - known[0], s[1] - known[1]) <= drift + ROUNDING
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("number", range(3))
 def test_where_a_third_peg_balances_it_is_found(number):
     """Pegs of the other jaw are put level with the foot of P at an orientation in a cell, if the three forces balance."""

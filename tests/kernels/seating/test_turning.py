@@ -95,6 +95,7 @@ def test_bounds_of_a_contact_enclose_it_over_its_range(within):
     assert seen > 150
 
 
+@pytest.mark.thorough
 def test_bounds_of_a_contact_at_one_orientation_are_as_good_as_exact():
     random, seen = np.random.default_rng(6), 0
     for _ in range(200):
@@ -107,6 +108,7 @@ def test_bounds_of_a_contact_at_one_orientation_are_as_good_as_exact():
     assert seen > 50
 
 
+@pytest.mark.thorough
 def test_zeros_of_waves_are_those_of_their_polynomial():
     """On the unit circle of complex numbers, with z for exp(i theta)."""
     random = np.random.default_rng(7)
