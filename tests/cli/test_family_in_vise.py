@@ -56,6 +56,7 @@ def test_one_thickness_for_drawings_and_a_limit(run: Any, shop: Path) -> None:
     assert all(one["above"] >= 20 for setup in first["plan"] for one in setup["parts"])
 
 
+@pytest.mark.thorough
 def test_programs_and_loads_of_jobs_count(run: Any, shop: Path, tmp_path: Path) -> None:
     """Part zero is where the program of the part has it."""
     program, tools, jobs = (tmp_path / name for name in ("slot.nc", "tools.toml", "jobs.toml"))

@@ -419,6 +419,7 @@ def test_losses_beyond_what_is_accepted_leave_a_part_out():
     ]
 
 
+@pytest.mark.thorough
 def test_a_program_s_forces_are_the_loads(tmp_path):
     path = tmp_path / "slot.nc"
     path.write_text(

@@ -76,6 +76,7 @@ def test_its_fixtures_are_those_of_a_vise_of_that_type(outcomes: tuple[Path, dic
         assert one == pytest.approx(other, abs=1e-5)
 
 
+@pytest.mark.thorough
 def test_its_own_words_are_told(outcomes: tuple[Path, dict[str, Any]]) -> None:
     """On the terminal, the page and in the schema."""
     told = {name: words for name, (_, words) in outcomes[1].items()}

@@ -64,6 +64,7 @@ def test_numbers_that_define_the_figures_are_the_same_in_both_copies() -> None:
     assert holding.PEG_WIDTH == pressed.WIDE
 
 
+@pytest.mark.thorough
 def test_what_is_true_holds(bent: Result) -> None:
     outcome = verify(bent)
     assert (outcome.proven, outcome.unproven, outcome.unchecked) == (2, (), ())
