@@ -3,7 +3,8 @@
 The estimate is a power law. A search grows with the number of faces and with the number of steps that the
 lattice offers between two pegs on a part of that size. Constants and exponents come from a fit to measured
 runs (``benchmarks/batch_estimate.py``); docs/benchmarks.md gives its accuracy. Only the order and the ratios
-of estimates matter; the speed of a machine is found while it runs.
+of estimates matter; the speed of a machine is found while it runs. Where friction holds a part that is loaded, most
+of the time goes into the forces: of each hold between flat jaws, and of the first seats under straps.
 
 Durations are kept in a text file beside the records, which does not tell whether a task is done. They are not
 in the records, because the bytes of a record must not depend on the machine or its speed. Each line is
@@ -26,6 +27,8 @@ from workhold.files.atomic import explain_system_errors
 from workhold.files.budget import LIMITS
 from workhold.files.text import read_limited
 from workhold.fixels.toolkit import Toolkit
+from workhold.model.query import Query
+from workhold.model.straps import USUAL_SEATS
 
 __all__ = ["TaskDurations", "predict_answering_seconds", "compute_measures", "predict_reading_seconds"]
 
@@ -35,7 +38,13 @@ LAWS: Mapping[str, tuple[float, float, float]] = {
     "plate": (-10.94, 0.93, 1.32),
     "two clamps": (-19.51, 0.07, 3.86),
     "fence": (-3.9, 0.39, -0.02),
+    "straps": (-6.99, -0.19, 1.21),
 }
+# Where friction holds the part, processor seconds for each hold or seat that is looked at under loads: for the first
+# load, each further one, and a program whose tools press on the part.
+FIRST_LOAD: Mapping[str, float] = {"jaws": 0.05, "straps": 0.16}
+FURTHER_LOAD: Mapping[str, float] = {"jaws": 0.04, "straps": 0.05}
+OF_PROGRAM: Mapping[str, float] = {"jaws": 0.2, "straps": 0.45}
 # How a line begins.
 NAME = re.compile(rf"[0-9a-f]{{1,{LETTERS}}}(,|$)")
 # Of a drawing: seconds for the first byte, and for a million of them.
@@ -65,11 +74,35 @@ def compute_measures(faces: int, size: tuple[float, float], toolkit: Toolkit) ->
     return toolkit.law, log(faces), log((2.0 * across + 1.0) * (2.0 * along + 1.0))
 
 
-def predict_answering_seconds(faces: int, size: tuple[float, float], toolkit: Toolkit) -> float:
-    """Return the predicted seconds of a search; ``size`` is width and height of the part in mm."""
+def predict_answering_seconds(
+    faces: int, size: tuple[float, float], toolkit: Toolkit, query: Query | None = None
+) -> float:
+    """Return the predicted seconds of a search; ``size`` is width and height of the part in mm.
+
+    ``query`` says with which loads; None for a search without loads.
+    """
     law, of_faces, of_steps = compute_measures(faces, size, toolkit)
     constant, first, second = LAWS[law]
-    return exp(constant + first * of_faces + second * of_steps)
+    seconds = exp(constant + first * of_faces + second * of_steps)
+    return seconds if query is None else seconds + predict_friction_seconds(faces, toolkit, query)
+
+
+def predict_friction_seconds(faces: int, toolkit: Toolkit, query: Query) -> float:
+    """Return the predicted seconds in which forces are found for what friction holds; 0 for pegs, and without loads."""
+    jaws = toolkit.flat_jaws
+    if not query.is_loaded or not toolkit.holds_by_friction:
+        return 0.0
+    kind = "straps" if jaws is None else "jaws"
+    if jaws is None:
+        looked_at = USUAL_SEATS if query.strapped is None else query.strapped
+    else:
+        looked_at = faces * len(jaws.parallels) * len(jaws.stops)
+    each = 0.0
+    if query.loads:
+        each += FIRST_LOAD[kind] + FURTHER_LOAD[kind] * (len(query.loads) - 1)
+    if query.program is not None and query.program.forces is not None:
+        each += OF_PROGRAM[kind]
+    return looked_at * each
 
 
 @define(eq=False)

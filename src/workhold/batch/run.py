@@ -365,5 +365,5 @@ def list_jobs(part: BatchPart, best: int) -> Iterator[BatchJob]:
             part,
             held_in,
             name,
-            estimate=predict_answering_seconds(part.faces, part.size, held_in.query.toolkit),
+            estimate=predict_answering_seconds(part.faces, part.size, held_in.query.toolkit, held_in.query),
         )

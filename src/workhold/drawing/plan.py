@@ -38,11 +38,13 @@ from workhold.drawing.scene import (
     format_number,
     measure_text,
 )
+from workhold.drawing.straps_drawn import avoid_straps
 from workhold.drawing.supports_drawn import PlannedSupports, draw_supports
 from workhold.fixels.carrier import make_column_letters
 from workhold.geometry.segment import Arc, Point
 from workhold.model.jaw_hold import JawHold
 from workhold.model.shown import ShownCarrier, ShownJaws
+from workhold.model.straps import StrappedHold
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -145,6 +147,8 @@ def avoid_drawing(placer: LabelPlacer, bench: BenchDrawing, view: View) -> None:
         avoid_clamp(placer, clamp, view)
     for wall in bench.shown.walls:
         placer.avoid_box(view.map_box(wall.bar))
+    if isinstance(bench.fixture.hold, StrappedHold):
+        avoid_straps(placer, bench.fixture.hold, bench.toolkit, view)
     if bench.shown.jaws is not None:
         for bar in (bench.shown.jaws.fixed, bench.shown.jaws.moving):
             placer.avoid_box(view.map_box(bar))

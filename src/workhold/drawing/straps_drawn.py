@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from math import cos, hypot, radians, sin
 
-from workhold.drawing.scene import BLACK, GREY, Scene, View
+from workhold.drawing.annotation import LabelPlacer
+from workhold.drawing.scene import BLACK, GREY, Box, Scene, View
 from workhold.drawing.support_signs import draw_pad
 from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.segment import Point
-from workhold.model.straps import StrappedHold
+from workhold.model.straps import HandPush, Strap, StrappedHold
 from workhold.model.support_request import find_usual_pad_radius
 
-__all__ = ["draw_straps"]
+__all__ = ["avoid_straps", "draw_straps"]
 
 BAR_FILL, HAND = "#8a93a3", "#0b3a82"
 # A hand's arrow in page units.
 ARROW_LENGTH = 46.0
+# Half the size of a strap's number, and half the length of the hand's word, page units.
+NUMBER_REACH, WORD_REACH = 8.0, 16.0
 
 
 def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, weight: float) -> None:
@@ -45,19 +48,49 @@ def draw_straps(scene: Scene, hold: StrappedHold, toolkit: Toolkit, view: View, 
             ends = [(start[0] - size, start[1] - way * size), (start[0] + size, start[1] + way * size)]
             group.add_line(ends, BLACK, 1.0 * weight)
         if weight >= 1.0:
-            # Over a support its sign is below the tip: the number stands on the bar.
-            x, y = tip if one.over is None else ((start[0] + tip[0]) / 2, (start[1] + tip[1]) / 2)
+            x, y = locate_number(one, start, tip)
             group.add_text((x, y + 4), str(number), 11, "middle", bold=True)
     if hold.push is not None:
         turn = radians(hold.push.direction_deg)
         x, y = view(hold.push.at)
-        long = ARROW_LENGTH * weight
-        start = x - long * cos(turn), y + long * sin(turn)
+        start = locate_hand(hold.push, view, weight)
         hand = scene.group("push")
         hand.add_arrow(start, (x, y), HAND, 2.4 * weight, 11 * weight)
         if weight >= 1.0:
             beyond = start[0] - 9 * cos(turn), start[1] + 9 * sin(turn) + 4
             hand.add_text(beyond, "hand", 11, "middle", fill=GREY, halo=3.0)
+
+
+def locate_number(strap: Strap, start: Point, tip: Point) -> Point:
+    """Return the page point of a strap's number: its tip, and over a support, whose sign is below the tip, the middle
+    of its bar. ``start`` and ``tip`` are the page points of bolt and tip.
+    """
+    return tip if strap.over is None else ((start[0] + tip[0]) / 2, (start[1] + tip[1]) / 2)
+
+
+def locate_hand(push: HandPush, view: View, weight: float) -> Point:
+    """Return the page point at which the arrow of a hand's push begins."""
+    turn, (x, y), long = radians(push.direction_deg), view(push.at), ARROW_LENGTH * weight
+    return x - long * cos(turn), y + long * sin(turn)
+
+
+def avoid_straps(placer: LabelPlacer, hold: StrappedHold, toolkit: Toolkit, view: View) -> None:
+    """Mark straps with their numbers, and the push by hand, for the label placer to avoid."""
+    straps = toolkit.strap_set
+    assert straps is not None
+    radius = max(straps.tip_radius * view.scale, NUMBER_REACH)
+    for one in hold.straps:
+        hole = straps.bolts.compute_hole_center(*one.hole)
+        start, tip = view((float(hole[0]), float(hole[1]))), view(one.at)
+        x, y = locate_number(one, start, tip)
+        placer.avoid_box(Box(*tip, *tip).grow(radius))
+        placer.avoid_box(Box(x, y, x, y).grow(NUMBER_REACH))
+        placer.avoid_box(Box(*start, *start).grow(radius / 2))
+        placer.avoid_line(start, tip, 8.0)
+    if hold.push is not None:
+        x, y = locate_hand(hold.push, view, 1.0)
+        placer.avoid_line((x, y), view(hold.push.at), 8.0)
+        placer.avoid_box(Box(x, y, x, y).grow(WORD_REACH))
 
 
 def locate_heel(start: Point, tip: Point, radius: float) -> Point:

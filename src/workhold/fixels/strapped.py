@@ -92,7 +92,7 @@ class StrapPlate(Toolkit):
     )
     noun = "plate"
     locked = "a strap with its nut,"
-    law = "plate"
+    law = "straps"
     arrangements = (Arrangement("strapped", (3,)),)
     wording = ToolkitWording(
         two="two locators",

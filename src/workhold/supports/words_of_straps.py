@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from math import ceil
-
 import numpy as np
 
 from workhold.contact.swept import find_swept_below
 from workhold.model.fixture import Fixture
 from workhold.model.friction import COEFFICIENTS, find_friction_coefficient
+from workhold.model.hold_words import format_set_force
 from workhold.model.jaw_hold import ProgramJawForce
 from workhold.model.program import Program
 from workhold.model.straps import StrappedHold
@@ -61,7 +60,7 @@ def list_steps(found: StrappedHold, fixture: Fixture, asked: StrapQuestion, unit
         )
     if found.clamp_needed is not None:
         steps.append(
-            f"Each strap presses with {ceil(found.clamp_needed / unit.newtons)} {unit.force} or more at its tip"
+            f"Each strap presses with {format_set_force(found.clamp_needed, unit)} or more at its tip"
         )
     if asked.given_force is not None and found.safety_reached is not None:
         steps.append(
