@@ -82,5 +82,5 @@ def moved(body: ElasticBody, loads: list[PointForces], reads: list[PointForces])
     """What is read of the movement under some loads together."""
     together = sum(load.wrench for load in loads)
     assert np.abs(together).max() < 1e-6
-    surface = body.respond([sum(body.compute_work(load) for load in loads)])[0]
+    surface = body.solve_loads([sum(body.compute_work(load) for load in loads)])[0]
     return [float((body.compute_work(read) * surface).sum()) for read in reads]

@@ -4,7 +4,7 @@ import os
 import sys
 from typing import NoReturn
 
-from workhold.cli.ending import INTERRUPTED, end_on_signals, say_interrupted
+from workhold.cli.ending import INTERRUPTED, end_on_signals, report_interrupted_once
 
 __all__ = ["run"]
 
@@ -28,7 +28,7 @@ def run() -> NoReturn:
 
         run()
     except KeyboardInterrupt:
-        say_interrupted()
+        report_interrupted_once()
         sys.exit(INTERRUPTED)
 
 

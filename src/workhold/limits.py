@@ -39,7 +39,7 @@ __all__ = [
     "refuse_little_space",
     "refuse_long",
     "refuse_many_steps",
-    "refuse_much_work",
+    "refuse_long_search",
     "refuse_strong",
     "choose_thread_count",
     "name_number_fields",
@@ -301,7 +301,7 @@ def choose_thread_count(threads: int | None) -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def refuse_much_work(
+def refuse_long_search(
     ways: float, extent: tuple[float, float], pitch: tuple[float, float], ways_at: Callable[[float], float]
 ) -> None:
     """Raise InputError when a search for two clamps on a lattice would take hours and too much memory.

@@ -175,7 +175,7 @@ def test_what_one_load_moves_another_by_is_what_that_moves_the_first_by(
     """Maxwell and Betti, also of loads that do not balance, and on curved elements."""
     body = bodies(make, sizes, 15.0)[0]
     works = np.array([body.compute_work(load) for load in some_loads(body)])
-    compliance = np.einsum("ank,bnk->ab", works, body.respond(works))
+    compliance = np.einsum("ank,bnk->ab", works, body.solve_loads(works))
     assert np.abs(compliance - compliance.T).max() <= 1e-8 * np.abs(compliance).max()
     assert np.linalg.eigvalsh(compliance).min() > 0.0
 
@@ -184,8 +184,8 @@ def test_loads_superposed_are_loads_at_once() -> None:
     body = bodies(block, (60.0, 20.0), 15.0)[0]
     works = np.array([body.compute_work(load) for load in some_loads(body)])
     factors = np.array([1.0, -2.0, 0.3, 5.0, -0.7, 1.1])
-    superposed = np.tensordot(factors, body.respond(works), axes=1)
-    at_once = body.respond([np.tensordot(factors, works, axes=1)])[0]
+    superposed = np.tensordot(factors, body.solve_loads(works), axes=1)
+    at_once = body.solve_loads([np.tensordot(factors, works, axes=1)])[0]
     assert np.abs(superposed - at_once).max() <= 1e-10 * np.abs(at_once).max()
 
 
@@ -215,7 +215,7 @@ def field_at(
 def test_every_node_of_the_surface_is_there_once() -> None:
     surface = bodies(ring, (40.0, 3.0), 10.0)[0].surface
     assert len(np.unique(np.round(surface.nodes, 6), axis=0)) == len(surface.nodes)
-    everywhere = surface.place_on(np.arange(len(surface.faces)), LATTICE)
+    everywhere = surface.interpolate_points(np.arange(len(surface.faces)), LATTICE)
     assert surface.nodes[surface.faces] == pytest.approx(everywhere, abs=1e-9)
     corners = surface.nodes[surface.triangles[:, :3]]
     area = (
@@ -286,7 +286,7 @@ def test_a_finer_body_is_no_stiffer_and_keeps_to_round_faces() -> None:
     ]
     works = [[sum(body.compute_work(load) for load in loads)] for body in (coarse, higher, fine)]
     energy = [
-        float((work[0] * body.respond(work)[0]).sum())
+        float((work[0] * body.solve_loads(work)[0]).sum())
         for body, work in zip((coarse, higher, fine), works, strict=True)
     ]
     assert energy[0] <= min(energy[1:]) and max(energy[1:]) <= 1.02 * energy[0]
@@ -349,7 +349,7 @@ def test_the_foot_is_weighted_by_its_area() -> None:
     area, bore = 1200.0, pi * 9.0
     middle = (area * 30.0 - bore * 51.0) / (area - bore)
     assert foot.middle == pytest.approx([middle, 10.0, 0.0], abs=0.02)
-    assert foot.press(UP).wrench[[2, 4]] == pytest.approx([1.0, -middle], abs=0.02)
+    assert foot.make_force(UP).wrench[[2, 4]] == pytest.approx([1.0, -middle], abs=0.02)
     turning = foot.make_unit_moment().wrench
     assert np.abs(turning[:3]).max() < 1e-12 and turning[5] == pytest.approx(1.0)
 

@@ -26,8 +26,8 @@ from workhold.bending.asking import (
 from workhold.bending.elastic import ElasticBody
 from workhold.bending.holding import (
     ElasticHold,
+    make_contact_strips,
     make_elastic_hold,
-    make_strips,
     sample_rectangle,
 )
 from workhold.bending.meshing import make_mesh
@@ -145,7 +145,7 @@ def test_a_clamped_part_touches_its_locators_and_what_closes_follows(name: str) 
     numbers = solved.units.add(hold.columns)
     reads = [solved.units.add(level) for level in hold.locating]
     held = HeldFixture(hold, numbers, reads, 3000.0, False)
-    _, motion = solved.find_clamped(held)
+    _, motion = solved.compute_clamped_state(held)
     rigid = np.array([read.wrench @ motion for read in hold.locating[0]])
     there = solved.read(reads[0], numbers) @ hold.clamping + rigid
     carriers = [result.toolkit.find_carrier(peg.carrier) for peg in result[0].pegs]
@@ -191,7 +191,7 @@ def test_solved_at_once_is_what_is_superposed(order: int) -> None:
     works = [
         factor * solved.compute_work(number) for number, factor in zip(numbers, hold.clamping, strict=True)
     ]
-    at_once = body.respond([sum(works)])[0]
+    at_once = body.solve_loads([sum(works)])[0]
     assert np.abs(at_once - superposed).max() <= 1e-10 * np.abs(at_once).max()
     summed = SolvedLoads(body, solved.units, is_summed=True)
     assert summed.add_up(numbers, hold.clamping) == pytest.approx(at_once, abs=1e-12)
@@ -289,7 +289,7 @@ def test_jaws_press_as_hard_as_loads_need_where_nobody_says() -> None:
         first = workhold.design(part, TOOLKITS[name], best=1, thickness=HIGH, loads=loads)[0]
         one = first.bending()
         needed = first.quality.get("jaw_force_needed", first.quality.get("clamp_needed"))
-        assert one.jaw_force == needed and not one.is_stated
+        assert one.jaw_force == needed and not one.is_assumed
 
 
 def test_a_jaw_that_touches_a_line_presses_on_a_strip_about_it() -> None:
@@ -328,7 +328,7 @@ def test_pegs_on_a_solid_press_no_higher_than_its_faces(tmp_path: Path) -> None:
     part = workhold.load(write_step(tmp_path / "bracket.step", SOLIDS["bracket"]()))
     result = workhold.design(part, workhold.Vise(pitch=10, columns=4, peg_radius=3), best=1, jaw_force=3000)
     points, normals = find_touched_points(result[0], part, result.toolkit)
-    strips = make_strips(result[0], part, points, normals, 42.0, None)
+    strips = make_contact_strips(result[0], part, points, normals, 42.0, None)
     tops = [float(one.points[:, 2].max()) for one in strips]
     assert min(tops) < 10.0 and max(tops) < 42.0
 
@@ -430,5 +430,5 @@ def test_without_a_force_all_is_for_a_thousand_newtons() -> None:
     part = workhold.Workpiece.from_points("plate", CORNERS)
     first = workhold.design(part, TOOLKITS["vise"], best=1, thickness=HIGH)[0]
     one = first.bending()
-    assert one.is_stated and one.jaw_force == 1000.0
+    assert one.is_assumed and one.jaw_force == 1000.0
     assert one.list_sentences("jaw", MILLIMETRE)[0].startswith("For each 1000 N of jaw force clamping bends")

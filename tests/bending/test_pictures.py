@@ -32,7 +32,7 @@ def bent_at(place: tuple[float, float, float]) -> Bending:
         material=METAL,
         thickness=HIGH,
         jaw_force=1000.0,
-        is_stated=False,
+        is_assumed=False,
         stiffness=inf,
         faces=(),
         below=None,

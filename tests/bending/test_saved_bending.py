@@ -35,7 +35,7 @@ def make_figures(size: float, give: float | None = 0.004, **other: Any) -> Bendi
         "material": find_material("mild-steel"),
         "thickness": 8.0,
         "jaw_force": 2500.0,
-        "is_stated": False,
+        "is_assumed": False,
         "stiffness": np.inf,
         "faces": (),
         "below": None,
@@ -62,7 +62,7 @@ def plain() -> Result:
 def partly(plain: Result) -> Result:
     """The second and the fourth fixture are bent."""
     faces: tuple[int | str, ...] = ("top", 2)
-    other = make_figures(0.01, stiffness=0.5, faces=faces, is_stated=True)
+    other = make_figures(0.01, stiffness=0.5, faces=faces, is_assumed=True)
     return plain.add_bending({1: make_figures(0.02), 3: other})
 
 

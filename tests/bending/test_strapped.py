@@ -71,7 +71,7 @@ def hold_part(result: Result, hold: StrappedHold, high: float) -> tuple[SolvedLo
     solved = SolvedLoads(body, UnitLoads(surface))
     numbers = solved.units.add(own.columns)
     reads = [solved.units.add(level) for level in own.locating]
-    return solved, solved.lay_on_plate(HeldFixture(own, numbers, reads, FORCE, False))
+    return solved, solved.add_plate_forces(HeldFixture(own, numbers, reads, FORCE, False))
 
 
 def test_cells_that_pull_let_go_and_those_that_sink_touch() -> None:
@@ -93,7 +93,7 @@ def test_cells_that_pull_let_go_and_those_that_sink_touch() -> None:
             motion = np.linalg.lstsq(wrenches[own], -free[own], rcond=None)[0]
             gaps = free + wrenches @ motion
             assert np.abs(gaps[own]).max() < 1e-7 and gaps.min() > -1e-7
-            further = rest.bear(rise[own, None], load[:, None])
+            further = rest.compute_bearing_forces(rise[own, None], load[:, None])
             assert wrenches[own].T @ further == pytest.approx(-load[:, None], abs=1e-6)
 
 
@@ -138,7 +138,7 @@ def test_straps_balance_and_every_load_is_answered(over: str) -> None:
     resting = list(held.hold.resting)
     rise = solved.read([held.numbers[k] for k in resting], held.numbers) @ held.hold.answers[:, :1]
     load = (wrenches @ held.hold.answers + np.eye(6))[BELOW][:, :1]
-    more = held.rest.bear(rise, load)
+    more = held.rest.compute_bearing_forces(rise, load)
     assert wrenches[BELOW][:, resting] @ more == pytest.approx(-load, abs=1e-6)
 
 
@@ -148,7 +148,7 @@ def test_no_cell_sinks_into_the_plate_and_none_is_pulled() -> None:
     assert isinstance(hold, StrappedHold)
     solved, held = hold_part(result, hold, HIGH)
     assert held.rest is not None
-    values, motion = solved.find_clamped(held)
+    values, motion = solved.compute_clamped_state(held)
     first = len(held.numbers) - len(held.rest.pressures)
     rigid = np.array([one.wrench @ motion for one in held.hold.columns])[first:]
     gaps = solved.read(held.numbers[first:], held.numbers) @ held.hold.clamping + rigid
@@ -251,7 +251,7 @@ def test_straps_press_as_hard_as_loads_need_where_nobody_says() -> None:
     result = strapped("plate")
     hold, bent = result[0].hold, bend(result, force=None)
     assert isinstance(hold, StrappedHold)
-    assert bent.jaw_force == hold.clamp_needed and not bent.is_stated
+    assert bent.jaw_force == hold.clamp_needed and not bent.is_assumed
 
 
 def test_a_seat_without_straps_bends_nothing() -> None:

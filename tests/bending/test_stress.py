@@ -24,7 +24,7 @@ FORCE = 1000.0
 
 def stress_under(body: ElasticBody, loads: list[PointForces]) -> np.ndarray:
     """Von Mises' stress at the nodes of each face under some loads together."""
-    moved = body.move_nodes(body.respond([sum(body.compute_work(load) for load in loads)])[0])
+    moved = body.move_nodes(body.solve_loads([sum(body.compute_work(load) for load in loads)])[0])
     return StressedSurface(body.surface, METAL).compute_mises_stress(moved)
 
 

@@ -24,7 +24,7 @@ from workhold.family.covering import (
     find_greedy_cover,
     find_maximal_sets,
     find_smallest_cover,
-    list_curve_points,
+    iterate_least_losses,
 )
 from workhold.family.solver import load_solver
 
@@ -250,10 +250,10 @@ def test_a_number_is_the_least_where_the_bound_before_needs_more() -> None:
     losses = np.array([[1.0, np.nan], [np.nan, 1.0], [1.5, 1.5]])
     search = Search(table_from(losses), np.array([1.0, 1.5]), None, lambda fraction: None)
     search.covers = {0: Cover((0, 1), 2), 1: Cover((2,), 1)}
-    assert [point.is_least for point in list_curve_points(search)] == [True, True]
+    assert [point.is_least for point in iterate_least_losses(search)] == [True, True]
     # One set-up is not ruled out at the smaller bound.
     search.covers = {0: Cover((0, 1), 1), 1: Cover((2,), 1)}
-    assert [(point.at_least, point.is_least) for point in list_curve_points(search)] == [
+    assert [(point.at_least, point.is_least) for point in iterate_least_losses(search)] == [
         (1, True),
         (1, False),
     ]

@@ -73,7 +73,7 @@ def test_what_double_precision_leaves_open_is_decided_without_the_families_as_wi
     family that holds nothing need not be, and every stage after agrees that they are not fixtures."""
     part, vise = load("oblongPart"), Vise(pitch=10, columns=2, peg_radius=3)
     lenient = design(part, vise)
-    monkeypatch.setattr(deciding, "hold_nothing", lambda records, _: np.zeros(len(records), np.bool_))
+    monkeypatch.setattr(deciding, "cannot_hold", lambda records, _: np.zeros(len(records), np.bool_))
     result = design(part, vise)
     check_account(result)
     assert result.proof is not None and lenient.proof is not None

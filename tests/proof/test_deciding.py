@@ -91,7 +91,7 @@ def test_a_cancel_on_the_way_stops_ball_arithmetic(
     """Boxes that doubles give up go to ball arithmetic one by one; a cancel there leaves the rest."""
     problem, records, _ = found
     monkeypatch.setattr(deciding, "decide_by_interval_newton", lambda block, *_: (block[:0], block))
-    monkeypatch.setattr(deciding, "hold_nothing", lambda records, _: np.zeros(len(records), np.bool_))
+    monkeypatch.setattr(deciding, "cannot_hold", lambda records, _: np.zeros(len(records), np.bool_))
     cancel = Event()
     looked_at = []
     original = deciding.decide_record_in_balls

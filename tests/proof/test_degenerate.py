@@ -35,7 +35,7 @@ from workhold.proof.degenerate import (
     are_lined_up,
     are_sliding,
     are_turning,
-    hold_nothing,
+    cannot_hold,
 )
 
 Array = NDArray[np.float64]
@@ -284,7 +284,7 @@ def test_no_proven_fixture_is_of_such_a_family(toolkit: Toolkit, monkeypatch: py
 
     def both(records: Array, problem: Problem, *rest: Any) -> tuple[Array, Array]:
         proven, left = sifted(records, problem, *rest)
-        counts[:] += hold_nothing(proven, problem).sum(), hold_nothing(left, problem).sum()
+        counts[:] += cannot_hold(proven, problem).sum(), cannot_hold(left, problem).sum()
         return proven, left
 
     sifted = deciding.sift_records
@@ -346,4 +346,4 @@ def test_only_pegs_of_one_carrier_are_a_fixed_length_apart() -> None:
         row[0, FEATURES : FEATURES + 4] = *sides, *sides
         for peg, hole, column in zip(pegs, holes, (0.0, 5.0), strict=True):
             row[0, FEATURES + peg], row[0, COLUMNS + peg] = hole, column
-        assert hold_nothing(row, problem).tolist() == [expected]
+        assert cannot_hold(row, problem).tolist() == [expected]

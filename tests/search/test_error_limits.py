@@ -36,7 +36,7 @@ from workhold.search.error_limits import (
     measure_distance_from_hull,
 )
 from workhold.search.lattice_shares import LatticeShares
-from workhold.search.shares import select_one_clamp
+from workhold.search.shares import make_one_clamp_query
 from workhold.search.toolkit_search import ToolkitSearch, limit_precision
 
 TOLERANCE = Tolerance(peg=0.0145, face=0.01)
@@ -245,7 +245,7 @@ def test_a_limit_loses_nothing_below_it(part: str, kit: str, times: float) -> No
 def one_way(query: Query) -> Query:
     """A query with the first of its toolkit's ways."""
     ways = query.toolkit.ways
-    return query if len(ways) == 1 else select_one_clamp(query, ways[0])
+    return query if len(ways) == 1 else make_one_clamp_query(query, ways[0])
 
 
 @pytest.mark.thorough

@@ -123,12 +123,12 @@ def test_triples_of_stretches_stand_for_all(monkeypatch: pytest.MonkeyPatch) -> 
 def test_candidates_that_are_not_proven_do_not_count(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of those that are decided the share that is proven counts."""
     query = Query(PARTS["widget"], KITS["vise"])
-    every, real = estimate.estimate_fixtures(query, 2), estimate.finish
+    every, real = estimate.estimate_fixtures(query, 2), estimate.decide_on_this_thread
 
     def decide_half(records: Any, *asked: Any) -> Any:
         return real([records[0][::2]], *asked)
 
-    monkeypatch.setattr(estimate, "finish", decide_half)
+    monkeypatch.setattr(estimate, "decide_on_this_thread", decide_half)
     assert every is not None and estimate.estimate_fixtures(query, 2) == pytest.approx(every / 2, rel=0.2)
 
 

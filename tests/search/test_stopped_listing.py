@@ -191,7 +191,7 @@ def test_stopped_while_the_file_is_written_the_best_are(
         write(result, out, form)
 
     monkeypatch.setattr(outputs, "write_output", interrupted)
-    monkeypatch.setattr(outputs, "keep_what_is_found", lambda: None)
+    monkeypatch.setattr(outputs, "note_results_to_keep", lambda: None)
     written = outputs.write_found(whole, str(tmp_path / "a.json"), "json")
     assert tries == [len(whole), MOST]
     assert written == cut(MOST) and len(workhold.open(tmp_path / "a.json")) == MOST

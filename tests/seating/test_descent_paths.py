@@ -248,14 +248,14 @@ def test_what_leaves_where_a_way_began_or_ended_is_outside(ways):
     assert len(free) > 1 and len(held_there) > 1
     one = np.stack([free[0], free[1], held_there[0], held_there[1], free[0]])
     two = np.stack([free[1], held_there[0], free[0], held_there[0], free[1]])
-    assert closing.find_leaving_at_stop(one, two, np.arange(5) < 4).tolist() == [
+    assert closing.find_escaping_at_stop(one, two, np.arange(5) < 4).tolist() == [
         True,
         True,
         True,
         False,
         False,
     ]
-    assert closing.find_leaving_at_stop(one, two, np.zeros(5, np.bool_)).tolist() == [False] * 5
+    assert closing.find_escaping_at_stop(one, two, np.zeros(5, np.bool_)).tolist() == [False] * 5
 
 
 def test_runs_of_loose_sets_are_free_and_touch_what_they_are_said_to(ways):

@@ -23,7 +23,7 @@ from workhold.kernels.seating.columns import (
     THETA,
 )
 from workhold.model.quality import FIGURE_RANKING
-from workhold.seating.contact_forces import settle_on_wall
+from workhold.seating.contact_forces import write_forces_on_wall
 from workhold.seating.pattern import Pattern
 from workhold.seating.solver import SeatingSolver
 from workhold.seating.wall_equilibria import LOCATOR, TIP, WallEquilibria
@@ -102,7 +102,7 @@ def sampled(fence, step):
         for locator in sides_of(fence, 0):
             if (
                 np.isnan(separations(fence, piece, locator, locator, thetas)[0]).all()
-                and not fence.is_upright
+                and not fence.runs_along_y
             ):
                 continue
             for tip in sides_of(fence, 1):
@@ -227,7 +227,7 @@ def test_two_balances_less_than_a_twentieth_of_a_degree_apart_are_both_found():
     near = near[np.abs(near[:, THETA] - pair[0]) < 0.01]
     assert near[:, THETA] == pytest.approx(pair, abs=1e-8) and (near[:, DOUBT] == 0.0).all()
     assert near[0, SECOND] * near[1, SECOND] < 0.0 and np.abs(near[:, SECOND]).max() < 1.0
-    settle_on_wall(near, closing.boundary, closing.pattern, closing.size)
+    write_forces_on_wall(near, closing.boundary, closing.pattern, closing.size)
     assert (near[:, RESIDUAL] < 1e-7).all() and near[:, FORCE : FORCE + 3].min() > 0.0
 
 

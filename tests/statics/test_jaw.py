@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from held import force_directions, held, load_wrench, plate_fixture
 from workhold import Load, Result
 from workhold.errors import InputError
-from workhold.statics.loads import compute_load_cases, compute_shared_forces, read_jaw_stiffness
+from workhold.statics.loads import compute_forces_with_jaw_stiffness, compute_load_cases, read_jaw_stiffness
 
 Array = NDArray[np.float64]
 
@@ -120,15 +120,17 @@ def test_friction_never_asks_for_more() -> None:
 def test_a_rigid_jaw_takes_its_share_and_one_that_keeps_its_force_none() -> None:
     """Behind a rigid jaw the forces are at right angles to those of closing."""
     forces, closing = np.split(np.random.default_rng(1).normal(size=(4, 4)), [3], axis=1)
-    assert (compute_shared_forces(forces, closing, 0.0) == forces).all()
-    assert closing[:, 0] @ compute_shared_forces(forces, closing, inf) == pytest.approx(0, abs=1e-12)
+    assert (compute_forces_with_jaw_stiffness(forces, closing, 0.0) == forces).all()
+    assert closing[:, 0] @ compute_forces_with_jaw_stiffness(forces, closing, inf) == pytest.approx(
+        0, abs=1e-12
+    )
 
 
 def test_two_clamps_that_are_locked_share_as_springs_do() -> None:
     """Of all forces that balance a load those with the least energy, found by least squares."""
     random = np.random.default_rng(2)
     forces, closing = random.normal(size=(5, 3)), random.normal(size=(5, 2))
-    out = compute_shared_forces(forces, closing, 2.0)
+    out = compute_forces_with_jaw_stiffness(forces, closing, 2.0)
     for k in range(3):
         # Contacts of stiffness 1, clamps of stiffness 2: minimize sum f^2 + sum k^2 / 2 over f = f0 + H k.
         system = np.vstack([closing, np.eye(2) / np.sqrt(2.0)])

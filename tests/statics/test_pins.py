@@ -71,7 +71,7 @@ def test_without_a_force_it_is_for_each_kn_and_warns_of_nothing(bent: Result) ->
         for key in PIN_KEYS:
             assert fixture.quality[key] == pytest.approx(2 * other[key], rel=1e-9)
         assert other["warnings"] == fixture.quality["warnings"] + 2
-    found = compute_bent_pegs(per_kn[0], SQUARE, VISE, pressed_up_to=76)
+    found = compute_bent_pegs(per_kn[0], SQUARE, VISE, pressed_top=76)
     assert found is not None and found.list_cautions("jaw", MILLIMETRE) == []
     assert found.describe_bending("jaw", MILLIMETRE).startswith("For each kN of jaw force ")
     assert found.describe_bending("jaw", INCH).startswith("For each 225 lbf")
@@ -92,13 +92,13 @@ def test_limits_are_those_of_the_toolkit(limits: dict[str, float], more: int) ->
     base = design(SQUARE, VISE, best=1, thickness=76)[0].quality["warnings"]
     result = design(SQUARE, evolve(VISE, pins=PinLimits(**limits)), best=1, thickness=76, jaw_force=500)
     assert result[0].quality["warnings"] == base + more
-    found = compute_bent_pegs(result[0], SQUARE, result.toolkit, pressed_up_to=76, jaw_force=500)
+    found = compute_bent_pegs(result[0], SQUARE, result.toolkit, pressed_top=76, jaw_force=500)
     assert found is not None and len(found.list_cautions("jaw", MILLIMETRE)) == more
 
 
 def test_the_usual_limit_is_a_third_of_the_yield_of_hrc_47() -> None:
     """HRC 47 is HV 471 (ASTM E140), which yields at 2.876 HV - 90.7 MPa (Pavlina and Van Tyne, 2008)."""
-    found = compute_bent_pegs(design(SQUARE, VISE, best=1)[0], SQUARE, VISE, pressed_up_to=10, jaw_force=1)
+    found = compute_bent_pegs(design(SQUARE, VISE, best=1)[0], SQUARE, VISE, pressed_top=10, jaw_force=1)
     assert found is not None
     assert found.stress_limit == round((2.876 * 471 - 90.7) / 3)
     assert found.movement_limit == 0.05
@@ -107,7 +107,7 @@ def test_the_usual_limit_is_a_third_of_the_yield_of_hrc_47() -> None:
 def test_the_worst_is_at_the_top_and_supports_make_the_lever_longer() -> None:
     fixture = design(SQUARE, VISE, best=1)[0]
     low, high = (
-        compute_bent_pegs(fixture, SQUARE, VISE, pressed_up_to=20, jaw_force=500, lift=lift)
+        compute_bent_pegs(fixture, SQUARE, VISE, pressed_top=20, jaw_force=500, lift=lift)
         for lift in (0.0, 8.0)
     )
     assert low is not None and high is not None
@@ -130,8 +130,8 @@ def test_where_no_height_is_known_nothing_is_said() -> None:
 def test_of_two_heights_the_lower_one_is_pressed() -> None:
     """A peg presses neither above its own end nor above the part."""
     asked = ((None, 6.0), (10.0, 6.0), (6.0, 10.0), (6.0, None))
-    assert {Query(SQUARE, VISE, thickness=t, peg_height=p).pressed_up_to for t, p in asked} == {6.0}
-    assert Query(SQUARE, VISE).pressed_up_to is None
+    assert {Query(SQUARE, VISE, thickness=t, peg_height=p).pressed_top for t, p in asked} == {6.0}
+    assert Query(SQUARE, VISE).pressed_top is None
     with pytest.raises(InputError, match="thickness -1"):
         Query(SQUARE, VISE, thickness=-1)
 
@@ -140,7 +140,7 @@ def test_clamps_and_points_do_not_bend() -> None:
     """Of a plate the three locators alone, and pegs of radius 0 have no section."""
     result = design(KITE, PLATE, best=3, thickness=12)
     for fixture in result:
-        found = compute_bent_pegs(fixture, KITE, PLATE, pressed_up_to=12)
+        found = compute_bent_pegs(fixture, KITE, PLATE, pressed_top=12)
         assert found is not None
         assert [peg.hole for peg in found.pegs] == [p.hole for p in fixture.pegs if p.carrier == "plate"]
         assert found.most.deflection == pytest.approx(fixture.quality["pin_deflection"], rel=1e-9)
@@ -155,7 +155,7 @@ def test_pegs_move_the_part_as_errors_of_their_places_would() -> None:
     touched = TouchableFeatures.from_workpiece(KITE, PLATE)
     for fixture in result:
         contacts = touched.compute_for_fixture(fixture, PLATE)
-        found = compute_bent_pegs(fixture, KITE, PLATE, pressed_up_to=30, jaw_force=900)
+        found = compute_bent_pegs(fixture, KITE, PLATE, pressed_top=30, jaw_force=900)
         assert found is not None
         ways = np.array([*[peg.deflection for peg in found.pegs], 0.0])
         moved = contacts.inverses[0, :3] @ ways
@@ -196,6 +196,6 @@ def test_of_a_solid_each_peg_is_pressed_in_the_middle_of_its_run() -> None:
 def test_warnings_of_bending_are_counted_of_whole_tables(bent: Result) -> None:
     """The column of warnings is that of its figures, and never less than without heights."""
     plain = measure_quality(bent.table, SQUARE, VISE, jaw_force=500)
-    tall = measure_quality(bent.table, SQUARE, VISE, jaw_force=500, pressed_up_to=76)
+    tall = measure_quality(bent.table, SQUARE, VISE, jaw_force=500, pressed_top=76)
     assert (tall[:, WARNINGS] >= plain[:, WARNINGS]).all()
     assert (tall[:, PIN_STRESS] > 421).all()

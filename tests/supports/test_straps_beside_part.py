@@ -20,7 +20,7 @@ from workhold.model.pose import Pose
 from workhold.supports.faces import LevelRegions
 from workhold.supports.strap_places import find_bolt_holes, find_strap_places
 from workhold.supports.straps import StrapSearch, make_question
-from workhold.supports.straps_beside_part import are_beside_part, are_beside_rising, keep_off
+from workhold.supports.straps_beside_part import are_beside_part, are_beside_rising, keep_clear_of_regions
 from workhold.verification import verify_file
 from workhold.verification.strapped import StrapJudge
 
@@ -140,16 +140,16 @@ def test_capsules_keep_off_regions():
     regions = LevelRegions.from_loops([square], [7.0])
     random = np.random.default_rng(3)
     starts, ends = random.uniform(-60, 90, (2, 400, 2))
-    clear = keep_off(regions, 7.0, starts, ends, 6.0)
+    clear = keep_clear_of_regions(regions, 7.0, starts, ends, 6.0)
     shares = np.linspace(0, 1, 2001)[:, None]
     for start, end, is_clear in zip(starts, ends, clear, strict=True):
         least = regions.measure_distances(7.0, start + shares * (end - start)).min()
         assert is_clear == (least >= 6.0) or abs(least - 6.0) < 0.03
     assert 50 < clear.sum() < 350
-    assert keep_off(regions, 8.0, starts, ends, 6.0).all()
+    assert keep_clear_of_regions(regions, 8.0, starts, ends, 6.0).all()
     for away, is_clear in ((6.03, True), (6.0, False), (5.99, False)):
         beside = np.array([[[-away, -50.0]], [[-away, 80.0]]])
-        assert keep_off(regions, 7.0, *beside, 6.0).tolist() == [is_clear]
+        assert keep_clear_of_regions(regions, 7.0, *beside, 6.0).tolist() == [is_clear]
 
 
 def test_bolts_keep_off_what_juts_out(solids):

@@ -19,7 +19,7 @@ from reading_here import work_reading_here
 from workhold import load
 from workhold.web.guard import AllowedHosts, ServerLimits
 from workhold.web.origins import AllowedOrigins
-from workhold.web.serve import Server, bound_socket, make_server
+from workhold.web.serve import Server, make_server, open_bound_socket
 from workhold.web.state import ServerState
 
 T = TypeVar("T")
@@ -131,7 +131,7 @@ def served(
 ) -> Iterator[RunningServer]:
     """What :func:`running_server` does, with the workers that there are."""
     listening = threading.Event()
-    socket = bound_socket("127.0.0.1", 0)
+    socket = open_bound_socket("127.0.0.1", 0)
     given = ServerLimits(**{"searches": 1, "desks": 1, "desk_seconds": PATIENCE, **limits})
     server = make_server(given, AllowedHosts(), listening.set, proxies, token, AllowedOrigins(origins))
     thread = threading.Thread(target=server.run, kwargs={"sockets": [socket]})

@@ -105,7 +105,7 @@ def make_records(
     held, along = held.take(clear), along[clear]
     points = np.stack([held.center.real, held.center.imag], axis=-1)
     held_rows = rows[held.feature][..., :SEGMENT_LENGTH]
-    good = may_close(
+    good = may_close_and_clamp(
         held, held_rows, compute_outward_normals(held_rows, points), points, length, frame.toolkit.clamping
     )
     out = np.zeros((len(held.psi), record.RECORD_LENGTH))
@@ -119,7 +119,7 @@ def make_records(
     return np.asarray(out[good])
 
 
-def may_close(
+def may_close_and_clamp(
     held: SimultaneousContacts, held_rows: Array, normals: Array, points: Array, length: float, clamping: int
 ) -> BoolArray:
     """Return whether the forces may close and clamp (model: conditions 4 and 5), (N,).

@@ -265,7 +265,7 @@ def run_task(task: Task, worker: str = "") -> Outcome:
     start = perf_counter()
     record, failure, has_no_room = None, "", False
     try:
-        make_ready(task)
+        prepare_process(task)
         record = task.make_record()
     except InputError as error:
         record = make_refusal_record(str(error))
@@ -294,7 +294,7 @@ class UnfitWorkerError(WorkholdError):
     """A worker cannot do a task that others can."""
 
 
-def make_ready(task: Task) -> None:
+def prepare_process(task: Task) -> None:
     """Prepare this process for a task.
 
     Raises UnfitWorkerError where this process runs another program than the sender, or lacks something.

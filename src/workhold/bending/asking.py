@@ -176,7 +176,7 @@ class HeldFixture:
     hold : the elastic hold, with its unit loads (columns).
     numbers : for each column of the hold, its number in :class:`UnitLoads`.
     reads : for each level of the hold's locators, the numbers of its readings in :class:`UnitLoads`.
-    force, is_stated : jaw force in N, and whether it is assumed because none was given.
+    force, is_assumed : jaw force in N, and whether it is assumed because none was given.
     below : the pads under the part and the clamp on top; None without.
     rest : where the part touches the plate that straps press it on; None without straps on a plate.
     """
@@ -185,7 +185,7 @@ class HeldFixture:
     numbers: list[int]
     reads: list[list[int]]
     force: float
-    is_stated: bool
+    is_assumed: bool
     below: PadsBelow | None = None
     rest: PlateRest | None = None
 
@@ -257,7 +257,7 @@ def find_bendings(
         face to be cut does not exist, or the extra ``bending`` is not installed.
     """
     query, height = result.query, asked.find_part_height(result.query)
-    cancel, tell = cancel or Event(), progress or tell_nobody
+    cancel, tell = cancel or Event(), progress or ignore_progress
     refuse_unknown_faces(asked.faces, query.workpiece)
     tell(0.0, 0)
     mesh = make_mesh(shape)
@@ -275,7 +275,7 @@ def find_bendings(
     held: list[HeldFixture] = []
     for row in rows:
         fixture = result[row]
-        force, is_stated = asked.find_jaw_force(fixture, query)
+        force, is_assumed = asked.find_jaw_force(fixture, query)
         hold = make_elastic_hold(
             fixture,
             query.workpiece,
@@ -283,13 +283,15 @@ def find_bendings(
             foot,
             jaw_force=force,
             height=height,
-            pressed_up_to=query.pressed_up_to,
+            pressed_top=query.pressed_top,
             stiffness=asked.stiffness,
             below=asked.below.get(row),
             faces=faces,
         )
         reads = [units.add(level) for level in hold.locating]
-        held.append(HeldFixture(hold, units.add(hold.columns), reads, force, is_stated, asked.below.get(row)))
+        held.append(
+            HeldFixture(hold, units.add(hold.columns), reads, force, is_assumed, asked.below.get(row))
+        )
     loads = list_cutter_loads(query, height)
     places = [] if loads is None else find_pressed_places(loads, units)
     second, third = (SolvedLoads(ElasticBody(mesh, asked.material, order), units) for order in (2, 3))
@@ -301,7 +303,7 @@ def find_bendings(
             return []
         second.solve(number)
         tell(MESHED + (SOLVED - MESHED) * (count + 1) / len(needed), 0)
-    held = [second.lay_on_plate(one) for one in held]
+    held = [second.add_plate_forces(one) for one in held]
     is_cut = find_cut_nodes(surface, asked.faces, query.workpiece, height)
     stressed = StressedSurface(surface, asked.material)
     beside_edges = find_pressed(surface.nodes, stressed.inner_edges, BESIDE_EDGES)
@@ -322,7 +324,7 @@ def find_bendings(
     return found
 
 
-def tell_nobody(fraction: float, count: int) -> None:
+def ignore_progress(fraction: float, count: int) -> None:
     """Do nothing. This is the progress callback used when the caller gives none."""
 
 
@@ -366,7 +368,7 @@ def make_bending(
         material=asked.material,
         thickness=asked.find_part_height(query),
         jaw_force=one.force,
-        is_stated=one.is_stated,
+        is_assumed=one.is_assumed,
         stiffness=asked.stiffness,
         faces=asked.faces,
         below=one.below,
@@ -399,13 +401,16 @@ def find_most_moved(
     faces = np.flatnonzero(is_cut[of_faces].all(axis=1) & (size[of_faces].max(axis=1) >= most))
     longest = np.linalg.norm(np.diff(surface.corners[faces], axis=1), axis=2).max()
     shares = list_lattice(4 * int(np.clip(np.ceil(longest / CLOSE_BY / 4), 1, MOST_QUARTERS)))
-    points, after = surface.place_on(faces, shares), third.clamp_on(one, faces, shares)
+    points, after = (
+        surface.interpolate_points(faces, shares),
+        third.compute_clamping_movement(one, faces, shares),
+    )
     far = np.linalg.norm(after, axis=2)
     most_there = np.flatnonzero(far >= (1.0 - 1e-9) * most)
     is_dent = find_pressed(points.reshape(-1, 3)[most_there], one.hold.pressed)
     far.ravel()[most_there[is_dent]] = 0.0
     face, point = np.divmod(int(far.argmax()), len(shares))
-    before = second.clamp_on(one, faces[[face]], shares[[point]])[0, 0]
+    before = second.compute_clamping_movement(one, faces[[face]], shares[[point]])[0, 0]
     change = float(np.linalg.norm(after[face, point] - before))
     value = float(far[face, point])
     return BentPlace(value, one.estimate_error(value, change), tuple(points[face, point].tolist()))
@@ -444,7 +449,7 @@ def find_pressed_places(loads: CutterLoads, units: UnitLoads) -> list[PressedPla
     for number in loads.chosen.tolist():
         footing = units.surface.find_footing(loads.points[number][None], None)
         patch = make_disc(units.surface.place(footing)[0], CUTTER_RADIUS, None)
-        pressing = [*(patch.press(axis) for axis in np.eye(3)), patch.make_unit_moment()]
+        pressing = [*(patch.make_force(axis) for axis in np.eye(3)), patch.make_unit_moment()]
         wrenches = np.array([force.wrench for force in pressing]).T
         reads = units.add(patch.read(axis) for axis in np.eye(3))
         found.append(PressedPlace(patch.middle, units.add(pressing), reads, wrenches))
@@ -497,10 +502,10 @@ class SolvedLoads:
     def solve(self, number: int) -> Array:
         """Return the surface's unknowns (S, 3) under the unit load with this number. The result is cached."""
         if number not in self.responses:
-            self.responses[number] = self.body.respond([self.compute_work(number)])[0]
+            self.responses[number] = self.body.solve_loads([self.compute_work(number)])[0]
         return self.responses[number]
 
-    def gather(self, numbers: Sequence[int], factors: Array) -> tuple[Sequence[int], Array]:
+    def gather_loads(self, numbers: Sequence[int], factors: Array) -> tuple[Sequence[int], Array]:
         """Return (numbers, factors) of the loads to solve for a sum of unit loads.
 
         They are the arguments unchanged. If ``is_summed``, they are the number of a single load that equals
@@ -522,7 +527,7 @@ class SolvedLoads:
         """Return the surface's unknowns (S, 3) under the sum of unit loads ``numbers``, each times its
         factor.
         """
-        numbers, factors = self.gather(numbers, factors)
+        numbers, factors = self.gather_loads(numbers, factors)
         total = np.zeros((len(self.body.surface_unknowns[0]), 3))
         for number, factor in zip(numbers, factors.tolist(), strict=True):
             if factor:
@@ -533,9 +538,9 @@ class SolvedLoads:
         """Return what the readings ``reads`` (R) measure under each of the unit loads ``numbers`` (L): an
         array (R, L).
         """
-        return np.array([[self.read_one(read, number) for number in numbers] for read in reads])
+        return np.array([[self.compute_reading(read, number) for number in numbers] for read in reads])
 
-    def read_one(self, read: int, number: int) -> float:
+    def compute_reading(self, read: int, number: int) -> float:
         """Return what the reading with number ``read`` measures under the unit load with this number."""
         pair = (read, number)
         if pair not in self.readings:
@@ -552,28 +557,28 @@ class SolvedLoads:
         ----------
         gives : (R,) distance in mm by which each contact of the first level of locators gives way.
         """
-        numbers, factors = self.gather(numbers, factors)
+        numbers, factors = self.gather_loads(numbers, factors)
         return one.hold.find_motion([self.read(level, numbers) @ factors for level in one.reads], gives)
 
     def solve_clamping(self, one: HeldFixture) -> Array:
         """Return the movement (N, 3) in mm of the surface's nodes under a fixture's clamps, with the part
         laid against its locators.
         """
-        values, motion = self.find_clamped(one)
+        values, motion = self.compute_clamped_state(one)
         return self.body.move_nodes(values) + make_rigid_motions(self.body.surface.nodes) @ motion
 
-    def clamp_on(self, one: HeldFixture, faces: NDArray[np.int64], shares: Array) -> Array:
+    def compute_clamping_movement(self, one: HeldFixture, faces: NDArray[np.int64], shares: Array) -> Array:
         """Return the movement (F, K, 3) in mm of points on F faces under a fixture's clamps, with the part
         laid against its locators.
 
         The points are at the barycentric coordinates ``shares`` (K, 3), the same on each face.
         """
-        values, motion = self.find_clamped(one)
-        points = self.body.surface.place_on(faces, shares)
+        values, motion = self.compute_clamped_state(one)
+        points = self.body.surface.interpolate_points(faces, shares)
         rigid = (make_rigid_motions(points.reshape(-1, 3)) @ motion).reshape(points.shape)
-        return self.body.move_on(values, faces, shares) + rigid
+        return self.body.interpolate_movement(values, faces, shares) + rigid
 
-    def find_clamped(self, one: HeldFixture) -> tuple[Array, Array]:
+    def compute_clamped_state(self, one: HeldFixture) -> tuple[Array, Array]:
         """Return (unknowns, motion) under a fixture's clamps.
 
         These are the surface's unknowns (S, 3) and the rigid motion (6,) that lays the part against its
@@ -583,7 +588,7 @@ class SolvedLoads:
         motion = self.find_motion(one, one.numbers, clamping, np.zeros(len(one.hold.gives)))
         return self.add_up(one.numbers, clamping), motion
 
-    def lay_on_plate(self, one: HeldFixture) -> HeldFixture:
+    def add_plate_forces(self, one: HeldFixture) -> HeldFixture:
         """Return a fixture with the forces by which its plate carries the part under clamping.
 
         The fixture comes back unchanged unless its part lies on a plate that it may lift off.
@@ -618,7 +623,7 @@ class SolvedLoads:
             rise = self.read([one.numbers[k] for k in resting], numbers) @ factors
             wrenches = np.array([column.wrench[BELOW] for column in hold.columns]).T
             load = place.wrenches[BELOW] @ vectors + wrenches @ factors[4:]
-            factors[[4 + k for k in resting]] += one.rest.bear(rise, load)
+            factors[[4 + k for k in resting]] += one.rest.compute_bearing_forces(rise, load)
         return factors
 
     def move_place(self, one: HeldFixture, place: PressedPlace, factors: Array) -> Array:
@@ -635,7 +640,7 @@ class SolvedLoads:
         moved = []
         for own in np.ascontiguousarray(factors.T):
             motion = self.find_motion(one, numbers, own, one.hold.gives @ own[4:])
-            loaded, shares = self.gather(numbers, own)
+            loaded, shares = self.gather_loads(numbers, own)
             moved.append(self.read(place.reads, loaded) @ shares + rigid @ motion)
         return np.array(moved).T
 

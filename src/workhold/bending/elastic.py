@@ -161,10 +161,12 @@ class ElasticBody:
         """
         faces = self.surface.faces
         moved = np.empty((len(self.surface.nodes), 3))
-        moved[faces.ravel()] = self.move_on(values, np.arange(len(faces)), LATTICE).reshape(-1, 3)
+        moved[faces.ravel()] = self.interpolate_movement(values, np.arange(len(faces)), LATTICE).reshape(
+            -1, 3
+        )
         return moved
 
-    def move_on(self, values: Array, faces: IntArray, shares: Array) -> Array:
+    def interpolate_movement(self, values: Array, faces: IntArray, shares: Array) -> Array:
         """Return the movement (F, K, 3) in mm of points on F faces, computed from the values (S, 3) of the
         surface's unknowns.
 
@@ -186,7 +188,7 @@ class ElasticBody:
         kinds, first, own = np.unique(order, axis=0, return_index=True, return_inverse=True)
         return kinds, first, own.ravel()
 
-    def respond(self, works: Sequence[Array]) -> Array:
+    def solve_loads(self, works: Sequence[Array]) -> Array:
         """Return the values (L, S, 3) of the surface's unknowns in mm under each of L loads by itself.
 
         Parameters

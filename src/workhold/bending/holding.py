@@ -34,7 +34,11 @@ from workhold.model.straps import StrappedHold
 from workhold.model.support_request import find_usual_pad_radius
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import TouchableFeatures
-from workhold.statics.loads import compute_shared_forces, find_contacts_on_part, find_touched_points
+from workhold.statics.loads import (
+    compute_forces_with_jaw_stiffness,
+    find_contacts_on_part,
+    find_touched_points,
+)
 from workhold.statics.pins import PinRuns, compute_deflections, find_runs_on_solid
 
 __all__ = ["BELOW", "ElasticHold", "make_elastic_hold"]
@@ -112,7 +116,7 @@ def make_elastic_hold(
     *,
     jaw_force: float,
     height: float,
-    pressed_up_to: float | None = None,
+    pressed_top: float | None = None,
     stiffness: float = np.inf,
     below: PadsBelow | None = None,
     faces: RestingFaces | None = None,
@@ -124,17 +128,17 @@ def make_elastic_hold(
     foot : patch of the level faces that the part lies on.
     jaw_force : jaw force in N; the force of each strap where straps hold the part.
     height : height of the part in mm.
-    pressed_up_to : height in mm up to which pegs press on a prism; None for its height. Not used for a solid.
+    pressed_top : height in mm up to which pegs press on a prism; None for its height. Not used for a solid.
     stiffness : ratio of the stiffness of the closed jaw to that of one contact.
     below : pads and a clamp on top; if None the part lies on ``foot``.
     faces : the faces of ``foot``, cut into cells; needed for a part that straps press on a plate.
     """
     size = max(np.ptp(np.array(workpiece.bounds).reshape(2, 2), axis=0).max(), height)
     if workpiece.solid is None:
-        pressed_up_to = height if pressed_up_to is None else min(height, pressed_up_to)
+        pressed_top = height if pressed_top is None else min(height, pressed_top)
     if isinstance(fixture.hold, StrappedHold):
         return make_strapped_hold(
-            fixture, fixture.hold, workpiece, toolkit, foot, faces, jaw_force, height, pressed_up_to
+            fixture, fixture.hold, workpiece, toolkit, foot, faces, jaw_force, height, pressed_top
         )
     if fixture.hold is not None:
         return make_elastic_jaw_hold(fixture, fixture.hold, foot, jaw_force, height, float(size))
@@ -143,11 +147,11 @@ def make_elastic_hold(
     contacts, normals, *_ = find_contacts_on_part(fixture, workpiece, toolkit, touched, matrices)
     points = contacts + touched.center
     carriers = toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)
-    strips = make_strips(fixture, workpiece, points, normals, height, pressed_up_to)
+    strips = make_contact_strips(fixture, workpiece, points, normals, height, pressed_top)
     outward = np.column_stack([normals, np.zeros(len(normals))])
-    pegs = tuple(strip.press(-normal) for strip, normal in zip(strips, outward, strict=True))
+    pegs = tuple(strip.make_force(-normal) for strip, normal in zip(strips, outward, strict=True))
     forces = matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
-    shared = compute_shared_forces(forces[:, :3], matrices.closing[0], stiffness)
+    shared = compute_forces_with_jaw_stiffness(forces[:, :3], matrices.closing[0], stiffness)
     cx, cy = touched.center
     in_plane = np.array([[1.0, 0, 0, 0, 0, 0], [0, 1.0, 0, 0, 0, 0], [cy, -cx, 0, 0, 0, 1.0]])
     moving = [number for number in dict.fromkeys(carriers) if toolkit.carriers[number].travel is not None]
@@ -157,7 +161,7 @@ def make_elastic_hold(
         own = np.array(carriers) == number
         movers[own, column] = normals[own] @ np.asarray(along)
     gives = np.zeros((len(pegs), len(pegs)))
-    np.fill_diagonal(gives, find_flexibilities(fixture, workpiece, toolkit, matrices.points, pressed_up_to))
+    np.fill_diagonal(gives, find_flexibilities(fixture, workpiece, toolkit, matrices.points, pressed_top))
     held = ElasticHold(
         pegs,
         jaw_force * forces[:, 3],
@@ -171,17 +175,17 @@ def make_elastic_hold(
     return add_support_from_below(held, foot, below)
 
 
-def make_strips(
+def make_contact_strips(
     fixture: Fixture,
     workpiece: Workpiece,
     points: Array,
     normals: Array,
     height: float,
-    pressed_up_to: float | None,
+    pressed_top: float | None,
 ) -> list[LoadPatch]:
     """Return for each peg, tip or wall the strip of the part's surface that it touches.
 
-    On a prism a strip extends from height 0 to ``pressed_up_to``. On a solid it covers the heights of its
+    On a prism a strip extends from height 0 to ``pressed_top``. On a solid it covers the heights of its
     face, up to ``height``.
 
     Parameters
@@ -191,7 +195,7 @@ def make_strips(
     """
     count = len(points)
     if workpiece.solid is None:
-        low, high = np.zeros(count), np.full(count, pressed_up_to)
+        low, high = np.zeros(count), np.full(count, pressed_top)
     else:
         faces = np.array([[peg.face for peg in fixture.pegs]])
         least, most = (one[0] for one in find_runs_on_solid(faces, points[None], workpiece))
@@ -204,14 +208,14 @@ def make_strips(
 
 
 def find_flexibilities(
-    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, points: Array, pressed_up_to: float | None
+    fixture: Fixture, workpiece: Workpiece, toolkit: Toolkit, points: Array, pressed_top: float | None
 ) -> Array:
     """Return the compliance (P,) of each contact in mm per N; 0 for tips, for walls, and where it is not
     known.
     """
     carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
-    runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, points, pressed_up_to)
+    runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, points, pressed_top)
     found: Array = np.nan_to_num(compute_deflections(1.0, runs.middle[0], runs.diameter[0]))
     return found
 
@@ -223,31 +227,31 @@ def add_support_from_below(held: ElasticHold, foot: LoadPatch, below: PadsBelow 
     The supports are the pads with their clamp on top. If ``below`` is None they are the level faces ``foot``.
     """
     if below is None:
-        return bear_from_below(held, *press_foot(foot))
+        return add_supports_below(held, *make_foot_loads(foot))
     tip = make_disc(below.clamp, below.tip_radius, UP)
     clamped = evolve(
         held,
-        columns=(*held.columns, tip.press(-UP)),
+        columns=(*held.columns, tip.make_force(-UP)),
         clamping=np.append(held.clamping, below.force),
         answers=np.vstack([held.answers, np.zeros((1, 6))]),
         gives=np.hstack([held.gives, np.zeros((len(held.gives), 1))]),
         pressed=np.concatenate([held.pressed, tip.points]),
     )
-    return bear_on_pads(clamped, below.pads, below.pad_radius)
+    return add_pads_below(clamped, below.pads, below.pad_radius)
 
 
-def bear_on_pads(held: ElasticHold, pads: Array, radius: float) -> ElasticHold:
+def add_pads_below(held: ElasticHold, pads: Array, radius: float) -> ElasticHold:
     """Return the hold with three pads added below the part.
 
     ``pads`` (3, 2) are their centres in mm, ``radius`` is in mm.
     """
     discs = [make_disc(np.array([x, y, 0.0]), radius, -UP) for x, y in pads]
     more = np.concatenate([held.pressed, *(disc.points for disc in discs)])
-    bearing, reads = (disc.press(UP) for disc in discs), (disc.read(-UP) for disc in discs)
-    return bear_from_below(evolve(held, pressed=more), tuple(bearing), tuple(reads))
+    bearing, reads = (disc.make_force(UP) for disc in discs), (disc.read(-UP) for disc in discs)
+    return add_supports_below(evolve(held, pressed=more), tuple(bearing), tuple(reads))
 
 
-def bear_from_below(
+def add_supports_below(
     held: ElasticHold, bearing: tuple[PointForces, ...], reads: tuple[PointForces, ...]
 ) -> ElasticHold:
     """Return (hold, factors): the hold with three unit loads from below added, and their factors under
@@ -269,7 +273,7 @@ def bear_from_below(
     )
 
 
-def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointForces, ...]]:
+def make_foot_loads(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointForces, ...]]:
     """Return (unit loads, readings) of the foot, three each.
 
     The loads are upward pressures 1, x and y about the centre; sums of these are all affine pressures. The
@@ -277,7 +281,9 @@ def press_foot(foot: LoadPatch) -> tuple[tuple[PointForces, ...], tuple[PointFor
     """
     arms = foot.points - foot.middle
     factors = [np.ones(len(arms)), arms[:, 0], arms[:, 1]]
-    return tuple(foot.press(UP, one) for one in factors), tuple(foot.press(-UP, one) for one in factors)
+    return tuple(foot.make_force(UP, one) for one in factors), tuple(
+        foot.make_force(-UP, one) for one in factors
+    )
 
 
 def make_strapped_hold(
@@ -289,7 +295,7 @@ def make_strapped_hold(
     faces: RestingFaces | None,
     strap_force: float,
     height: float,
-    pressed_up_to: float | None,
+    pressed_top: float | None,
 ) -> ElasticHold:
     """Return the elastic hold of straps, each of which presses straight down with ``strap_force`` N.
 
@@ -312,9 +318,9 @@ def make_strapped_hold(
     ]
     count = len(tips)
     clamping = np.full(count, strap_force)
-    columns = tuple(tip.press(-UP) for tip in tips)
+    columns = tuple(tip.make_force(-UP) for tip in tips)
     points, normals = find_touched_points(fixture, workpiece, toolkit)
-    strips = make_strips(fixture, workpiece, points, normals, height, pressed_up_to)
+    strips = make_contact_strips(fixture, workpiece, points, normals, height, pressed_top)
     outward = np.column_stack([normals, np.zeros(len(normals))])
     reads = tuple(strip.read(normal) for strip, normal in zip(strips, outward, strict=True))
     held = ElasticHold(
@@ -329,7 +335,7 @@ def make_strapped_hold(
             x, y, _ = tip.middle.tolist()
             cells += faces.make_cells_under((x, y), toolkit.strap_set.tip_radius, top)
         resting = tuple(range(len(held.columns), len(held.columns) + len(cells)))
-        pressing = tuple(cell.press(UP) for cell in cells)
+        pressing = tuple(cell.make_force(UP) for cell in cells)
         return evolve(
             held,
             columns=(*held.columns, *pressing),
@@ -342,12 +348,12 @@ def make_strapped_hold(
     plate = next(one for one in toolkit.carriers if one.has_lattice and one.travel is None)
     at = np.array([back.apply(*plate.compute_hole_center(*one)) for one in hold.supports])
     radius = find_usual_pad_radius(toolkit)
-    borne = bear_on_pads(held, at, radius).clamping[count:]
+    borne = add_pads_below(held, at, radius).clamping[count:]
     if (borne < -1e-6 * strap_force).any():
         raise InputError("the straps tip the part off its supports, so that it is not known what bears it.")
     pads = [make_disc(np.array([x, y, 0.0]), radius, -UP) for x, y in at]
     limits = np.array([*[strap_force] * count, *np.maximum(borne, 1e-3 * strap_force)])
-    return bear_on_pads(add_friction(held, (*tips, *pads), limits), at, radius)
+    return add_pads_below(add_friction(held, (*tips, *pads), limits), at, radius)
 
 
 def add_friction(held: ElasticHold, patches: Sequence[LoadPatch], limits: Array) -> ElasticHold:
@@ -359,7 +365,7 @@ def add_friction(held: ElasticHold, patches: Sequence[LoadPatch], limits: Array)
     columns: list[PointForces] = []
     weights: list[float] = []
     for patch, limit in zip(patches, limits.tolist(), strict=True):
-        columns += [patch.press(np.array([1.0, 0.0, 0.0])), patch.press(np.array([0.0, 1.0, 0.0]))]
+        columns += [patch.make_force(np.array([1.0, 0.0, 0.0])), patch.make_force(np.array([0.0, 1.0, 0.0]))]
         columns.append(patch.make_unit_moment())
         weights += [limit, limit, limit * patch.compute_gyration()]
     level = [0, 1, 5]
@@ -399,13 +405,13 @@ def make_elastic_jaw_hold(
         own = LoadPatch(turned, turned, outward, weights)
         factors = [np.ones(len(there)), *(one / max(np.sqrt(weights @ one**2), 1e-9) for one in (x, up))]
         normal_columns.append(list(range(len(columns), len(columns) + 3)))
-        columns += [own.press(-outward, one) for one in factors]
-        columns += [own.press(along), own.press(UP), own.press(UP, factors[1])]
+        columns += [own.make_force(-outward, one) for one in factors]
+        columns += [own.make_force(along), own.make_force(UP), own.make_force(UP, factors[1])]
         dents.append(turned)
         if side < 0:
-            reads = tuple(own.press(outward, one) for one in factors)
+            reads = tuple(own.make_force(outward, one) for one in factors)
     first, other = normal_columns
-    bearing, below = press_foot(foot)
+    bearing, below = make_foot_loads(foot)
     wrenches = np.array([one.wrench for one in (*columns, *bearing)]).T
     scale = np.array([1.0, 1.0, 1.0, *[1.0 / size] * 3])
     normal = wrenches[:, [*first, *other]]

@@ -72,7 +72,7 @@ class LoadPatch:
         """Fraction (M,) of the patch's area that each point represents."""
         return np.full(len(self.points), 1.0 / len(self.points)) if self.weights is None else self.weights
 
-    def press(self, direction: Array, factors: Array | None = None) -> PointForces:
+    def make_force(self, direction: Array, factors: Array | None = None) -> PointForces:
         """Return a force of 1 N in a direction (3,), spread evenly over the patch.
 
         With ``factors`` (M,), the force at each point is multiplied by its factor.

@@ -45,7 +45,7 @@ class PlateRest:
     compliance: Array
     wrenches: Array
 
-    def bear(self, rise: Array, load: Array) -> Array:
+    def compute_bearing_forces(self, rise: Array, load: Array) -> Array:
         """Return the forces (T, V) in N by which the touching cells balance V further loads without moving.
 
         Parameters
@@ -53,13 +53,13 @@ class PlateRest:
         rise : (T, V) rise in mm of each touching cell under the loads alone.
         load : (3, V) wrench (F_z, M_x, M_y) of the loads.
         """
-        return balance(self.compliance, self.wrenches, rise, load)[0]
+        return solve_balance(self.compliance, self.wrenches, rise, load)[0]
 
 
-def balance(compliance: Array, wrenches: Array, rise: Array, load: Array) -> tuple[Array, Array]:
+def solve_balance(compliance: Array, wrenches: Array, rise: Array, load: Array) -> tuple[Array, Array]:
     """Return (forces (T, V), motions (3, V)) under which the T cells do not rise and V loads are balanced.
 
-    The parameters are as in :class:`PlateRest` and :meth:`PlateRest.bear`.
+    The parameters are as in :class:`PlateRest` and :meth:`PlateRest.compute_bearing_forces`.
     """
     count = len(compliance)
     soft = max(float(np.abs(compliance).max()), 1e-30)
@@ -101,7 +101,9 @@ def find_rest(compliance: Array, wrenches: Array, rise: Array, load: Array) -> P
     guesses: set[bytes] = set()
     for _ in range(MOST_GUESSES):
         own = np.flatnonzero(touching)
-        forces, motion = balance(compliance[np.ix_(own, own)], wrenches[own], rise[own, None], load[:, None])
+        forces, motion = solve_balance(
+            compliance[np.ix_(own, own)], wrenches[own], rise[own, None], load[:, None]
+        )
         pressures = np.zeros(count)
         pressures[own] = forces[:, 0]
         gaps = compliance @ pressures + rise + wrenches @ motion[:, 0]

@@ -16,7 +16,7 @@ import numpy as np
 from attrs import define, frozen
 from numpy.typing import NDArray
 
-from workhold.bending.surface import LATTICE, Surface, number_of
+from workhold.bending.surface import LATTICE, Surface, find_lattice_node
 from workhold.model.elastic_material import ElasticMaterial
 
 __all__ = ["BESIDE_EDGES", "StressedSurface"]
@@ -135,8 +135,8 @@ class StressedSurface:
     @cached_property
     def inner_edges(self) -> Array:
         """Points (K, 3) in mm along all sharp inner edges of the surface, close to each other."""
-        sides = np.array([number_of(2, 2), number_of(0, 2), number_of(2, 0)])
-        corners = [number_of(4, 0), number_of(0, 4), number_of(0, 0)]
+        sides = np.array([find_lattice_node(2, 2), find_lattice_node(0, 2), find_lattice_node(2, 0)])
+        corners = [find_lattice_node(4, 0), find_lattice_node(0, 4), find_lattice_node(0, 0)]
         node = self.surface.faces[:, sides].ravel()
         order = np.argsort(node, kind="stable")
         is_same = node[order[:-1]] == node[order[1:]]

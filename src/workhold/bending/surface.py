@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from workhold.bending.library import load_elements
 from workhold.errors import InputError
 
-__all__ = ["LATTICE", "Footing", "Surface", "find_surface", "list_lattice", "number_of"]
+__all__ = ["LATTICE", "Footing", "Surface", "find_surface", "list_lattice", "find_lattice_node"]
 
 Array = NDArray[np.float64]
 IntArray = NDArray[np.int64]
@@ -79,7 +79,9 @@ class Surface:
     @property
     def corners(self) -> Array:
         """Corners (F, 3, 3) of the faces, in mm."""
-        return self.nodes[self.faces[:, [number_of(4, 0), number_of(0, 4), number_of(0, 0)]]]
+        return self.nodes[
+            self.faces[:, [find_lattice_node(4, 0), find_lattice_node(0, 4), find_lattice_node(0, 0)]]
+        ]
 
     def find_footing(self, points: Array, outward: Array | None) -> Footing:
         """Return the places on the surface nearest to points (M, 3): faces and barycentric coordinates.
@@ -117,11 +119,11 @@ class Surface:
             faces[some], shares[some] = chosen[nearest], found[np.arange(len(nearest)), nearest]
         return Footing(faces, shares)
 
-    def place_on(self, faces: IntArray, shares: Array) -> Array:
+    def interpolate_points(self, faces: IntArray, shares: Array) -> Array:
         """Return the points (F, K, 3) in mm of curved faces at the barycentric coordinates ``shares`` (K, 3)."""
         a, b, c = shares.T
         weights = [a * (2 * a - 1), b * (2 * b - 1), c * (2 * c - 1), 4 * a * b, 4 * b * c, 4 * c * a]
-        six = [number_of(*one) for one in ((4, 0), (0, 4), (0, 0), (2, 2), (0, 2), (2, 0))]
+        six = [find_lattice_node(*one) for one in ((4, 0), (0, 4), (0, 0), (2, 2), (0, 2), (2, 0))]
         return np.asarray(np.einsum("sk,fsx->fkx", np.array(weights), self.nodes[self.faces[faces][:, six]]))
 
     def place(self, footing: Footing) -> Array:
@@ -131,7 +133,7 @@ class Surface:
         return np.asarray(np.einsum("mc,mck->mk", footing.shares, self.corners[footing.faces]))
 
 
-def number_of(first: int, second: int) -> int:
+def find_lattice_node(first: int, second: int) -> int:
     """Return the index in ``LATTICE`` of the node with these barycentric coordinates, both in quarters."""
     return int(np.flatnonzero((QUARTERS[:, 0] == first) & (QUARTERS[:, 1] == second))[0])
 
@@ -146,7 +148,7 @@ def list_small_triangles() -> IntArray:
         ((2, 2), (0, 2), (2, 0)),
     ):
         a, b, c = (np.array(one) for one in corners)
-        rows.append([number_of(*one) for one in (a, b, c, (a + b) // 2, (b + c) // 2, (c + a) // 2)])
+        rows.append([find_lattice_node(*one) for one in (a, b, c, (a + b) // 2, (b + c) // 2, (c + a) // 2)])
     return np.array(rows, np.int64)
 
 

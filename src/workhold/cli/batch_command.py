@@ -11,7 +11,7 @@ import typer
 from attrs import frozen
 
 from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
-from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
+from workhold.cli.ending import INTERRUPTED, note_results_to_keep, set_event_on_interrupt
 from workhold.cli.options import PartOptions
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output_folder
 from workhold.cli.program_options import SOLIDS, ProgramOptions
@@ -248,7 +248,7 @@ def batch(
     Example: workhold batch parts/ --toolkit plate-20mm,clamp-plate-20mm --out results
     """
     asked = parse(parts, toolkit, varied, (words, seated_by, machined), written, work, reading)
-    report(asked, ask(asked))
+    report(asked, run_searches(asked))
 
 
 def parse(
@@ -279,7 +279,7 @@ def parse(
     return BatchTask(requests, kept, place, folder, names, written)
 
 
-def ask(asked: BatchTask) -> BatchAnswer:
+def run_searches(asked: BatchTask) -> BatchAnswer:
     """Return the answers of a search for every part and toolkit,
     or those known when the user stops it with Ctrl-C.
     """
@@ -292,8 +292,10 @@ def ask(asked: BatchTask) -> BatchAnswer:
     store = FolderStore(asked.folder / RECORDS) if records is None else open_store(records)
     measured = TaskDurations(asked.folder / MEASURED)
     start = perf_counter()
-    with ask_to_stop("the answers so far are kept, and the tables and the report are written") as stop:
-        keep_what_is_found()
+    with set_event_on_interrupt(
+        "the answers so far are kept, and the tables and the report are written"
+    ) as stop:
+        note_results_to_keep()
         if asked.place.cluster is None:
             compile_kernels(stop)
             if any(is_seated(held) for request in asked.requests for held in request.held_in):

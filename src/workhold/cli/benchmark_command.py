@@ -11,7 +11,7 @@ import typer
 from attrs import frozen
 
 from workhold.cli.commands import make_flag, make_option, spread_option_groups
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output_folder
 from workhold.cli.progress import show_progress
 from workhold.cli.table import Table, format_count, print_tables
@@ -180,7 +180,7 @@ def make_sets(asked: BenchmarkTask, chosen: Sequence[SetEntry]) -> list[MadeSet]
     if words.parquet:
         load_arrow()
     write_common(chosen, folder)
-    with ask_to_stop("the finished sets are kept") as cancel:
+    with set_event_on_interrupt("the finished sets are kept") as cancel:
         compile_kernels(cancel)
         with show_progress("Making sets", "fixtures") as progress:
             made = make_and_write_sets(
@@ -239,7 +239,7 @@ def compare(asked: BenchmarkTask) -> list[ComparedFile]:
     for entry in entries:
         find_set(entry.set_name)
     done: list[ComparedFile] = []
-    with ask_to_stop("the results so far are printed") as cancel:
+    with set_event_on_interrupt("the results so far are printed") as cancel:
         compile_kernels(cancel)
         with show_progress("Comparing", "files") as progress:
             for number, (name, entry) in enumerate(zip(files, entries, strict=True), 1):

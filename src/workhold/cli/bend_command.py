@@ -10,7 +10,7 @@ import typer
 from attrs import frozen
 
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
-from workhold.cli.ending import INTERRUPTED, ask_to_stop, keep_what_is_found
+from workhold.cli.ending import INTERRUPTED, note_results_to_keep, set_event_on_interrupt
 from workhold.cli.options import SHOWN_UNIT, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import (
     FORCE,
@@ -163,13 +163,13 @@ def bend(
     from workhold.bending.asking import find_bendings
 
     with (
-        ask_to_stop("what is found so far is told") as cancel,
+        set_event_on_interrupt("what is found so far is told") as cancel,
         show_progress("Bending", f"of {len(rows)}", "Meshing the part") as progress,
     ):
 
         def tell(fraction: float, count: int) -> None:
             if count:
-                keep_what_is_found()
+                note_results_to_keep()
             progress(fraction, count)
 
         found = find_bendings(result, rows, whole, asked, cancel, tell)
@@ -345,7 +345,7 @@ def tabulate(
             ]
         table.add_row(*cells)
     first = ranked[0][1]
-    stated = f"You gave no {mover} force, so every figure is for 1000 N.\n" if first.is_stated else ""
+    stated = f"You gave no {mover} force, so every figure is for 1000 N.\n" if first.is_assumed else ""
     return [
         f"How far {result.workpiece.name} of {asked.material.words} is bent",
         "",

@@ -14,8 +14,14 @@ from workhold.asking.declaring import list_declarations
 from workhold.asking.search import SEARCH, SearchQuestion
 from workhold.cli.commands import make_flag, make_option, print_remark, spread_option_groups
 from workhold.cli.declared import make_flag_attribute, make_option_attributes, make_word_attribute, read_words
-from workhold.cli.design_report import NEAREST_MISS, draw_best, draw_one, explain_none, list_picture_names
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.design_report import (
+    NEAREST_MISS,
+    draw_best,
+    explain_none,
+    list_picture_names,
+    write_fixture_pictures,
+)
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.options import CALLED, PartArgument, PartOptions
 from workhold.cli.outputs import (
     FORCE,
@@ -255,7 +261,7 @@ def design(
     Example: workhold design part.dxf --vise plate-20mm --out part.json
     """
     asked = parse(part, held_in, words, seated_by, machined, searched, written, reading)
-    report(asked, ask(asked))
+    report(asked, search_and_write(asked))
 
 
 def parse(
@@ -306,7 +312,7 @@ def parse(
     return DesignTask(query, loaded, searched.every, threads, engine, high, unit, output)
 
 
-def ask(asked: DesignTask) -> DesignAnswer:
+def search_and_write(asked: DesignTask) -> DesignAnswer:
     """Return the result of the search, after writing the result file.
 
     A search of very many fixtures writes its file itself while it runs. After a Ctrl-C the result is
@@ -315,7 +321,9 @@ def ask(asked: DesignTask) -> DesignAnswer:
     query, engine, output, estimated = asked.query, asked.engine, asked.output, None
     start, is_first_run = perf_counter(), False
     # What was found is decided for a moment more (``proof.deciding``); the rest of it is left.
-    with ask_to_stop("the fixtures found so far are kept, if their proof takes little time") as cancel:
+    with set_event_on_interrupt(
+        "the fixtures found so far are kept, if their proof takes little time"
+    ) as cancel:
         if engine == "curves":
             from workhold.cli.warming import compile_kernels
 
@@ -514,7 +522,9 @@ def make_further_data(asked: DesignTask, result: Result) -> dict[str, Any]:
         why = explain(result.query, asked.threads, unit)
         explained = describe_explanation(why, result.toolkit)
         if folder is not None and why.nearest is not None:
-            written = draw_one(why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
+            written = write_fixture_pictures(
+                why.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit
+            )
     elif result.complete and folder is not None:
         written = draw_best(result, folder, unit)
     return {"explanation": explained, "pictures": [str(path) for path in written]}

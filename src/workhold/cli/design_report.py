@@ -17,7 +17,14 @@ if TYPE_CHECKING:
     from workhold.model.search_report import Explanation
     from workhold.units import Unit
 
-__all__ = ["NEAREST_MISS", "THUMBNAILS", "draw_best", "draw_one", "explain_none", "list_picture_names"]
+__all__ = [
+    "NEAREST_MISS",
+    "THUMBNAILS",
+    "draw_best",
+    "write_fixture_pictures",
+    "explain_none",
+    "list_picture_names",
+]
 
 BEST_DRAWN = 12
 ENDINGS = (".svg", ".png")
@@ -35,7 +42,9 @@ def make_picture_name(place: int) -> str:
     return f"fixture-{place:02d}"
 
 
-def draw_one(fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit) -> list[Path]:
+def write_fixture_pictures(
+    fixture: Fixture, result: Result, folder: Path, name: str, title: str, unit: Unit
+) -> list[Path]:
     """Draw one fixture of a result into a folder, which is created, as SVG and PNG; return both paths."""
     from workhold.drawing.fixture_pictures import draw_fixture
 
@@ -111,7 +120,9 @@ def explain_none(
     explanation = explain(result.query, threads, unit)
     print_explanation(explanation, result.query.toolkit, unit, stream, result.notes)
     if folder is not None and explanation.nearest is not None:
-        svg, png = draw_one(explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit)
+        svg, png = write_fixture_pictures(
+            explanation.nearest.fixture, result, folder, NEAREST_MISS, "Nearest miss", unit
+        )
         print_tables(f"Drawn: the nearest miss in {svg} and {png.name}.", stream=stream)
 
 

@@ -21,11 +21,11 @@ from typing import NoReturn
 __all__ = [
     "INTERRUPTED",
     "Interrupted",
-    "ask_to_stop",
+    "set_event_on_interrupt",
     "end_on_signals",
-    "keep_what_is_found",
-    "leave",
-    "say_interrupted",
+    "note_results_to_keep",
+    "exit_with_code",
+    "report_interrupted_once",
 ]
 
 INTERRUPTED, TERMINATED = 130, 143
@@ -67,13 +67,13 @@ class SignalState:
         now = monotonic()
         if self.noted_at is None:
             self.noted_at = now
-            self.timer = threading.Timer(GRACE, self.end_impatiently, (number,))
+            self.timer = threading.Timer(GRACE, self.end_unless_storing, (number,))
             self.timer.daemon = True
             self.timer.start()
         elif now - self.noted_at > AT_ONCE:
             end_now(number)
 
-    def end_impatiently(self, number: int) -> None:
+    def end_unless_storing(self, number: int) -> None:
         """End a process that has not ended by itself, unless it is storing its results after a Ctrl-C."""
         if not (number == signal.SIGINT and self.keeping):
             end_now(number)
@@ -96,8 +96,8 @@ def end_on_signals() -> None:
     signal.set_wakeup_fd(writer, warn_on_full_buffer=False)
     signal.signal(signal.SIGINT, raise_interrupted)
     signal.signal(signal.SIGTERM, terminate)
-    sys.unraisablehook = end_where_it_is_lost
-    atexit.register(keep_the_code)
+    sys.unraisablehook = end_on_swallowed_signal
+    atexit.register(ignore_signals_at_exit)
     threading.Thread(target=watch, args=(reader,), daemon=True).start()
 
 
@@ -122,7 +122,7 @@ def terminate(number: int, frame: FrameType | None) -> None:
     raise Terminated(TERMINATED)
 
 
-def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
+def end_on_swallowed_signal(lost: sys.UnraisableHookArgs) -> None:
     """End the process at once when the exception of a signal was swallowed, as in a callback of a compiled
     library.
 
@@ -134,13 +134,13 @@ def end_where_it_is_lost(lost: sys.UnraisableHookArgs) -> None:
     sys.__unraisablehook__(lost)
 
 
-def leave(code: int) -> NoReturn:
-    """Raise SystemExit with a code, and remember the code for :func:`keep_the_code`."""
+def exit_with_code(code: int) -> NoReturn:
+    """Raise SystemExit with a code, and remember the code for :func:`ignore_signals_at_exit`."""
     ending.code = code
     sys.exit(code)
 
 
-def keep_the_code() -> None:
+def ignore_signals_at_exit() -> None:
     """Ignore signals while Python shuts down, so that they do not change the exit code; called at exit.
 
     Output is written and threads have ended by then. A process that has received a signal exits here at once.
@@ -162,12 +162,12 @@ def end_now(number: int) -> None:
     if atomic is not None:
         atomic.remove_unfinished()
     if number == signal.SIGINT:
-        say_interrupted()
+        report_interrupted_once()
     # Threads may be deep in compiled code: no orderly end waits for them.
     os._exit(CODES[number])
 
 
-def say_interrupted() -> None:
+def report_interrupted_once() -> None:
     """Print on stderr, once, that the command was interrupted."""
     if not ending.said:
         ending.said = True
@@ -176,18 +176,18 @@ def say_interrupted() -> None:
             os.write(2, line + b"workhold: interrupted; no unfinished file was left behind.\n")
 
 
-def keep_what_is_found() -> None:
+def note_results_to_keep() -> None:
     """Note that there are results to keep. An interrupted search then has time to return them."""
     ending.keeping = True
 
 
 @contextmanager
-def ask_to_stop(then: str) -> Iterator[threading.Event]:
+def set_event_on_interrupt(then: str) -> Iterator[threading.Event]:
     """Yield an event that Ctrl-C sets within the block; ``then`` is printed on stderr to say what happens
     next.
 
     The program ends on a second Ctrl-C, or shortly after the first if there are no results to keep (see
-    :func:`keep_what_is_found`).
+    :func:`note_results_to_keep`).
     """
     event = threading.Event()
     if threading.current_thread() is not threading.main_thread():

@@ -12,7 +12,7 @@ import typer
 from attrs import frozen
 
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.options import CALLED, PartArgument, PartOptions
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.program_options import SOLIDS, ProgramOptions
@@ -101,7 +101,7 @@ def explore(
     Example: workhold explore part.dxf --pitch 8,10,12.5 --columns 1,2 --peg-radius 3
     """
     asked = parse(part, vise, toolkit, varied, words, machined, written, reading)
-    report(asked, ask(asked))
+    report(asked, explore_each_toolkit(asked))
 
 
 def parse(
@@ -124,7 +124,7 @@ def parse(
     # Pegs of each diameter reach as high as they must beside a solid, and the outline is what those meet.
     is_solid = reading.peg_height is None and Path(part).suffix.lower() in SOLIDS
     diameters = [find_peg_diameter(one) if is_solid else None for one in toolkits]
-    loaded = read_for(
+    loaded = read_part_by_diameter(
         diameters, part, collect_carrier_heights(toolkits), machined.adapt_part_options(part, reading)
     )
     refuse_unknown_faces(asked["restrictions"].avoid, loaded.values())
@@ -139,7 +139,7 @@ def parse(
     return ExploreTask(list(loaded.values()), queries, written, shown)
 
 
-def read_for(
+def read_part_by_diameter(
     diameters: Iterable[float | None], part: str, heights: Mapping[str, Sequence[float]], reading: PartOptions
 ) -> dict[float | None, LoadedPart]:
     """Read the part once for each diameter of pegs in mm, and return the parts by diameter.
@@ -165,13 +165,13 @@ def refuse_unknown_faces(numbers: Sequence[int], loaded: Collection[LoadedPart])
             find_face_of_segment(each.workpiece, number)
 
 
-def ask(asked: ExploreTask) -> list[ToolkitOutcome]:
+def explore_each_toolkit(asked: ExploreTask) -> list[ToolkitOutcome]:
     """Return the outcome of each toolkit in order, or of those tried before a Ctrl-C."""
     from workhold.cli.warming import compile_kernels
     from workhold.search.design import explore as try_all
 
     found: list[ToolkitOutcome] = []
-    with ask_to_stop("the results so far are kept") as cancel:
+    with set_event_on_interrupt("the results so far are kept") as cancel:
         compile_kernels(cancel)
         with show_search_progress() as progress:
             for item in try_all(asked.queries, cancel):

@@ -22,7 +22,7 @@ from workhold.cli.commands import (
     print_remark,
     spread_option_groups,
 )
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.jobs import list_family_parts, make_family_queries
 from workhold.cli.options import PartOptions
 from workhold.cli.outputs import FORCE, JSON, OUTPUT, print_json, refuse_output
@@ -217,7 +217,7 @@ def family(
     Example: workhold family drawings --vise plate-20mm --max-loss 1.25
     """
     asked = parse(parts, held_in, planned, words, written, reading)
-    report(asked, ask(asked))
+    report(asked, find_asked_family(asked))
 
 
 def parse(
@@ -252,7 +252,7 @@ def parse(
     return FamilyTask(members, left_out, rules, setups, planned.ask_for_plan, written, unit)
 
 
-def ask(asked: FamilyTask) -> FamilyAnswer:
+def find_asked_family(asked: FamilyTask) -> FamilyAnswer:
     """Return the family of peg patterns that hold the parts, and the plan if one was asked for.
 
     Exits with INTERRUPTED after Ctrl-C while kernels are compiled.
@@ -260,7 +260,7 @@ def ask(asked: FamilyTask) -> FamilyAnswer:
     from workhold.cli.warming import compile_kernels
 
     start = perf_counter()
-    with ask_to_stop("nothing is found yet") as cancel:
+    with set_event_on_interrupt("nothing is found yet") as cancel:
         compiled = ", compiling on this first run included" if compile_kernels(cancel) else ""
     if cancel.is_set():
         raise typer.Exit(INTERRUPTED)

@@ -19,7 +19,7 @@ from typer.main import get_command
 
 from workhold import __version__
 from workhold.cli.commands import PlainCommand, PlainGroup, print_remark, redirect_to_null
-from workhold.cli.ending import INTERRUPTED, end_on_signals, leave, say_interrupted
+from workhold.cli.ending import INTERRUPTED, end_on_signals, exit_with_code, report_interrupted_once
 from workhold.errors import NO_ROOM, InputError, lacks_memory
 from workhold.limits import refuse_little_space
 
@@ -131,7 +131,7 @@ def handle_exits() -> Iterator[None]:
     try:
         yield
     except KeyboardInterrupt as error:
-        say_interrupted()
+        report_interrupted_once()
         raise typer.Exit(INTERRUPTED) from error
     except BrokenPipeError as error:
         redirect_to_null(sys.stdout)
@@ -236,7 +236,7 @@ def run() -> NoReturn:
     # Every matrix here is small; threads to multiply large ones would only be started and never used.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     code = int(app(standalone_mode=False))
-    leave(exit_code(sys.stdout.flush) or code)
+    exit_with_code(exit_code(sys.stdout.flush) or code)
 
 
 def exit_code(command: Callable[[], Any]) -> int:
@@ -249,7 +249,7 @@ def exit_code(command: Callable[[], Any]) -> int:
     except UsageError as error:
         return print_usage_error(error)
     except (KeyboardInterrupt, typer.Abort):
-        say_interrupted()
+        report_interrupted_once()
         return INTERRUPTED
     except BrokenPipeError:
         redirect_to_null(sys.stdout)

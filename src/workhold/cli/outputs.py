@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from workhold.cli.commands import make_flag, make_option
-from workhold.cli.ending import Interrupted, keep_what_is_found
+from workhold.cli.ending import Interrupted, note_results_to_keep
 from workhold.cli.table import print_tables
 from workhold.cli.values import read_choice, read_picture_ending
 from workhold.errors import InputError
@@ -146,7 +146,7 @@ def write_found(result: Result, out: str, form: str) -> Result:
 
         if out == STANDARD_OUTPUT or len(result) <= LISTED_LATE:
             raise
-        keep_what_is_found()
+        note_results_to_keep()
         result = result.slice_rows(slice(LISTED_LATE)).mark_cut_short(LISTED_LATE)
         write_output(result, out, form)
     return result

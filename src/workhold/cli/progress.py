@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 from attrs import define, field
 
 from workhold.cli.commands import print_remark
-from workhold.cli.ending import keep_what_is_found
+from workhold.cli.ending import note_results_to_keep
 from workhold.errors import make_printable
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def show_search_progress(keeps: bool = True) -> Iterator[Callable[[float, int], 
         def report_progress(fraction: float, found: int) -> None:
             """Show progress, and note that there are findings to keep."""
             if found and keeps:
-                keep_what_is_found()
+                note_results_to_keep()
             show(fraction, found)
 
         yield report_progress

@@ -13,7 +13,7 @@ import typer
 from attrs import frozen
 
 from workhold.cli.commands import make_flag, make_option
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.options import ResultArgument
 from workhold.cli.outputs import (
     FORCE,
@@ -133,7 +133,7 @@ def verify(
     Example: workhold verify part.json
     """
     asked = parse(result_file, list_, complete, part, threads, json_)
-    report(asked, ask(asked))
+    report(asked, run_verification(asked))
 
 
 def parse(
@@ -151,7 +151,7 @@ def parse(
     return VerifyTask(path, of_supports, listed, complete, part, workers, as_json)
 
 
-def ask(asked: VerifyTask) -> VerifyAnswer:
+def run_verification(asked: VerifyTask) -> VerifyAnswer:
     """Return the verification of everything in the file, compared with a new search if that was asked for."""
     from workhold.completeness import read_kept_shape
     from workhold.verification.listing import read_listing
@@ -201,7 +201,7 @@ def compare_with_search(outcome: Verification, listing: WrittenListing, workers:
     from workhold.cli.warming import compile_kernels
     from workhold.completeness import complete_verification
 
-    with ask_to_stop("nothing is compared") as cancel:
+    with set_event_on_interrupt("nothing is compared") as cancel:
         compile_kernels(cancel)
         with show_search_progress() as progress:
             return complete_verification(outcome, listing, threads=workers, progress=progress, cancel=cancel)

@@ -95,7 +95,7 @@ def seat(result_file: ResultArgument, number: RankArgument, *, words: SeatOption
     """
     asked = parse(result_file, read_rank(number), words)
     if asked.result.toolkit.closes_at_once:
-        report(asked, ask(asked))
+        report(asked, find_seating_of_fixture(asked))
     else:
         report_by_hand(asked)
 
@@ -110,7 +110,7 @@ def parse(result_file: str, rank: int, words: SeatOptions) -> SeatTask:
     return SeatTask(result, rank, side, opened, picture, unit, words.json_)
 
 
-def ask(asked: SeatTask) -> Seating:
+def find_seating_of_fixture(asked: SeatTask) -> Seating:
     """Return the seating of the fixture, taken from the result if it is there, else computed."""
     result = asked.result
     known: Seating | None = asked.fixture.seating

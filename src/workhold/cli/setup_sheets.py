@@ -32,7 +32,7 @@ __all__ = [
     "choose_supports_from_file",
     "choose_best_supports",
     "write_first_sheet",
-    "find_first_side",
+    "compare_with_earlier_result",
     "refuse_sheet",
     "write_bodies",
 ]
@@ -173,7 +173,7 @@ def write_first_sheet(
         "unit": unit,
         "thickness": thickness,
         "supports": supports,
-        "first_side": None if before is None else find_first_side(result, rank, before),
+        "first_side": None if before is None else compare_with_earlier_result(result, rank, before),
     }
     write_paper(sheet, result, rank, None if out == STANDARD_OUTPUT else out, settings)
     return rank
@@ -269,7 +269,7 @@ def choose_best_supports(
     return ChosenSupports.from_supports(found)
 
 
-def find_first_side(result: Result, rank: int, before: str) -> FirstSide:
+def compare_with_earlier_result(result: Result, rank: int, before: str) -> FirstSide:
     """Return what the fixture of a rank has in common with the best fixture of another result, in which
     another side of the solid is up.
 

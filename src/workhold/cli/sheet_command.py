@@ -27,7 +27,7 @@ from workhold.cli.setup_sheets import (
     PART_FILE,
     choose_best_supports,
     choose_supports_from_file,
-    find_first_side,
+    compare_with_earlier_result,
 )
 from workhold.cli.values import choose_printed_unit, read_unit
 from workhold.errors import InputError
@@ -174,7 +174,7 @@ def parse(result_file: str, rank: int, path: Path, words: SheetOptions, unit: st
     for_cam = ending in MODEL_ENDINGS
     has_room = not for_cam or ending in STEP_ENDINGS
     supported = words.supports or on_supports
-    refuse_in_space(for_cam, has_room, path, supported, words.support_height, words.first_setup)
+    refuse_options_of_other_files(for_cam, has_room, path, supported, words.support_height, words.first_setup)
     return SheetTask(path, result_file, rank, settings, given, words, unit, on_supports)
 
 
@@ -196,7 +196,7 @@ def write(asked: SheetTask) -> None:
 
         settings["shape"] = read_part_shape(words.part, result.workpiece)
     if words.first_setup is not None:
-        settings["first_side"] = find_first_side(result, rank, words.first_setup)
+        settings["first_side"] = compare_with_earlier_result(result, rank, words.first_setup)
     if words.seating and result[rank - 1].seating is None and result.toolkit.closes_at_once:
         from workhold.cli.warming import compile_seating
 
@@ -231,7 +231,7 @@ def read_sheet_content(asked: SheetTask) -> tuple[Result, int, dict[str, Any], t
     return result, asked.rank, {"supports": chosen}, loads
 
 
-def refuse_in_space(
+def refuse_options_of_other_files(
     for_cam: bool,
     shows_supports: bool,
     path: Path,

@@ -94,7 +94,7 @@ def show(
     Example: workhold show part.json 1 --draw setup.png --glb setup.glb
     """
     asked = parse(result_file, read_rank(number), draw, bodies, freecad, force, words, unit, json_)
-    report(asked, ask(asked))
+    report(asked, make_load_cases(asked))
 
 
 def parse(
@@ -137,7 +137,7 @@ def parse(
     )
 
 
-def ask(asked: ShowTask) -> tuple[LoadCase, ...]:
+def make_load_cases(asked: ShowTask) -> tuple[LoadCase, ...]:
     """Return a load case for each load.
 
     It is () for a fixture that holds by friction, since the design has already checked the loads.
@@ -270,7 +270,7 @@ def compute_peg_bending(result: Result, rank: int, jaw_force: float | None) -> B
         result[rank - 1],
         result.workpiece,
         result.toolkit,
-        pressed_up_to=query.pressed_up_to,
+        pressed_top=query.pressed_top,
         jaw_force=query.jaw_force if jaw_force is None else jaw_force,
     )
 

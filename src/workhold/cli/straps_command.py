@@ -9,7 +9,7 @@ from attrs import frozen
 
 from workhold.cli.commands import make_option, print_remark, spread_option_groups
 from workhold.cli.declared import read_coefficients, read_separated_lengths, read_zone
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import JSON, print_json
 from workhold.cli.program_options import ProgramOptions
@@ -127,7 +127,7 @@ def straps(
     rank, shown = read_rank(number), read_unit(unit)
     result = read_result_with_rank(result_file, rank)
     fixture, asked = result[rank - 1], read_question(words, machined, result, shown)
-    with ask_to_stop("the best straps so far are kept") as cancel:
+    with set_event_on_interrupt("the best straps so far are kept") as cancel:
         found = find_straps(fixture, result.query, asked, cancel)
     printed = choose_printed_unit(unit, result.toolkit)
     if json_:

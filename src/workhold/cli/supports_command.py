@@ -17,7 +17,7 @@ from workhold.cli.declared import (
     read_words,
     read_zone,
 )
-from workhold.cli.ending import INTERRUPTED, ask_to_stop
+from workhold.cli.ending import INTERRUPTED, set_event_on_interrupt
 from workhold.cli.options import SHOWN_UNIT, RankArgument, ResultArgument, read_rank, read_result_with_rank
 from workhold.cli.outputs import FORCE, JSON, print_json, refuse_output
 from workhold.cli.progress import show_progress
@@ -206,7 +206,7 @@ def supports(
     raised = words.support_height
     models = list_asked_model_files(glb, step, (result_file, part), force, support_height=raised, part=part)
     asked = parse(result_file, rank, words, count, out, models, part, unit)
-    found = ask(asked)
+    found = find_supports_of_fixture(asked)
     helped = list_clamp_forces_with_friction(found, count, asked.friction)
     write(asked, found)
     written = [path for path in (out, glb, step) if path is not None]
@@ -257,7 +257,7 @@ def parse(
     )
 
 
-def ask(asked: SupportsTask) -> Supports:
+def find_supports_of_fixture(asked: SupportsTask) -> Supports:
     """Return the supports found, with smaller pads if there is no place for pads of the usual size.
 
     After Ctrl-C, return the best found so far.
@@ -265,7 +265,7 @@ def ask(asked: SupportsTask) -> Supports:
     from workhold.supports.asking import support_with_smaller_sizes
 
     with (
-        ask_to_stop("the best of the sets so far is kept") as cancel,
+        set_event_on_interrupt("the best of the sets so far is kept") as cancel,
         show_progress("Looking for supports", "of 1 fixture") as show,
     ):
         (found,), _ = support_with_smaller_sizes(

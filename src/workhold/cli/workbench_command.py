@@ -125,7 +125,11 @@ def workbench(
     if order.part is None:
         if order.chosen < 1:
             raise InputError(f"there is no fixture {order.chosen} in the list: design first.")
-        print_json(**put_in(read_result_with_rank(place / RESULT, order.chosen), order.chosen, order, place))
+        print_json(
+            **describe_placed_fixture(
+                read_result_with_rank(place / RESULT, order.chosen), order.chosen, order, place
+            )
+        )
         return
     cancel = Event()
     Thread(target=watch_for_cancel, args=(cancel,), daemon=True).start()
@@ -240,8 +244,8 @@ def make_design_data(result: Result, order: WorkbenchOrder, folder: Path, cancel
 
         svg = draw_best_thumbnails(result, shown)
         (folder / f"{THUMBNAILS}.svg").write_text(svg, encoding="utf-8")
-        draw(svg, folder / f"{THUMBNAILS}.png", ACROSS_SHEET)
-    return data | {"found": rank is not None} | put_in(result, rank or 1, order, folder)
+        write_png(svg, folder / f"{THUMBNAILS}.png", ACROSS_SHEET)
+    return data | {"found": rank is not None} | describe_placed_fixture(result, rank or 1, order, folder)
 
 
 def read_listed_fixtures(folder: Path, name: str = RESULT) -> list[dict[str, Any]]:
@@ -278,7 +282,7 @@ def identify_fixture(fixture: Mapping[str, Any]) -> str:
     return json.dumps([[fixture["type"], directions, pegs], fixture["pose"]["theta_deg"]])
 
 
-def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
+def describe_placed_fixture(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> dict[str, Any]:
     """Return the bodies (without the part), pose, holes and marks of the fixture of a rank, as plain data.
 
     Its picture is written if the order asks for it.
@@ -296,7 +300,7 @@ def put_in(result: Result, rank: int, order: WorkbenchOrder, folder: Path) -> di
 
         path = make_planned_path(result, rank - 1)
         svg = draw_fixture(fixture, result.workpiece, result.toolkit, title=f"Fixture {rank}", path=path)
-        draw(svg, folder / f"{CHOSEN}.png", ACROSS_PAGE)
+        write_png(svg, folder / f"{CHOSEN}.png", ACROSS_PAGE)
     pose = assembly.fixture.pose
     return {
         "rank": rank,
@@ -330,10 +334,10 @@ def draw_nearest_miss(result: Result, folder: Path) -> None:
     nearest = explain(result.query).nearest
     if nearest is not None:
         svg = draw_fixture(nearest.fixture, result.workpiece, result.toolkit, title="Nearest miss")
-        draw(svg, folder / f"{NEAREST_MISS}.png", ACROSS_PAGE)
+        write_png(svg, folder / f"{NEAREST_MISS}.png", ACROSS_PAGE)
 
 
-def draw(svg: str, path: Path, width: int) -> None:
+def write_png(svg: str, path: Path, width: int) -> None:
     """Write SVG text as a PNG of this width in pixels."""
     from workhold.drawing.render import convert_svg_to_png
 

@@ -204,7 +204,7 @@ def avoid_clamp(placer: LabelPlacer, clamp: ShownClamp, view: View) -> None:
     """Mark a clamp's drawing and its arrow for the label placer to avoid."""
     (x, y), size = compute_clamp_arrow(clamp, view)
     along, across = size * LENGTH / 2, size * WIDTH / 2
-    half_x, half_y = (across, along) if clamp.is_upright else (along, across)
+    half_x, half_y = (across, along) if clamp.pushes_along_column else (along, across)
     placer.avoid_box(Box(x - half_x, y - half_y, x + half_x, y + half_y))
     placer.avoid_box(view.map_box(clamp.extent))
 
@@ -218,7 +218,9 @@ def draw_clamp(scene: Scene, clamp: ShownClamp, plate: ShownCarrier, view: View,
     if clamp.hole is None:
         box = view.map_box(plate.plate)
         ends = (
-            [(tip[0], box.y1), (tip[0], box.y0)] if clamp.is_upright else [(box.x0, tip[1]), (box.x1, tip[1])]
+            [(tip[0], box.y1), (tip[0], box.y0)]
+            if clamp.pushes_along_column
+            else [(box.x0, tip[1]), (box.x1, tip[1])]
         )
         group.add_line(ends, BLACK, 1.0 * weight, stroke_dasharray="7 4", **{"class": "clamp-line"})
     else:

@@ -490,7 +490,7 @@ def collect_sheet_details(
         fixture,
         workpiece,
         toolkit,
-        pressed_up_to=find_pressed_height(thickness, peg_height, supports, lift),
+        pressed_top=find_pressed_height(thickness, peg_height, supports, lift),
         jaw_force=jaw_force,
         lift=lift,
     )

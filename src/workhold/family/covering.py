@@ -40,7 +40,7 @@ __all__ = [
     "find_greedy_cover",
     "find_maximal_sets",
     "bound_cover_size",
-    "list_curve_points",
+    "iterate_least_losses",
     "make_loss_table",
 ]
 
@@ -364,10 +364,10 @@ def compute_curve(
     for place in (0, last):
         search.search_at_bound(place, table)
     search.search_between(0, last, table, 1.0)
-    return tuple(reversed(list(list_curve_points(search))))
+    return tuple(reversed(list(iterate_least_losses(search))))
 
 
-def list_curve_points(search: Search) -> Iterator[Point]:
+def iterate_least_losses(search: Search) -> Iterator[Point]:
     """Yield the curve's points, one for each number of set-ups, the smallest loss first."""
     fewest = len(search.table.words) + 1
     for place in sorted(search.covers):

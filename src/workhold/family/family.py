@@ -232,7 +232,7 @@ def make_family(
     Parameters
     ----------
     asked : at least one part; all with the same toolkit and the same first figure of the ranking.
-    thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
+    thresholds, unfit : which fixtures may be used, see ``family.members.are_usable``.
     most_loss : larger losses are not accepted; None accepts any.
     seconds : time limit, after which the curve known so far is returned; None runs until it is fully proven.
     same_zero : whether all parts of a set-up must have their zeros at the same place and the same turn.

@@ -62,7 +62,7 @@ __all__ = [
     "describe_loss_figure",
     "format_loss",
     "compute_losses",
-    "may_be_used",
+    "are_usable",
     "make_member",
     "make_other_side_query",
     "make_threshold",
@@ -156,7 +156,7 @@ def format_loss(loss: float) -> str:
     return f"{ceil(loss * 1000 - 1e-6) / 1000:.3f}" if isfinite(loss) else "any"
 
 
-def may_be_used(
+def are_usable(
     table: FixtureTable, thresholds: Sequence[FigureThreshold], tolerance: Tolerance, with_unfit: bool
 ) -> NDArray[np.bool_]:
     """Return (N,) booleans: whether each fixture reaches every threshold and is fit for a workshop.
@@ -319,7 +319,7 @@ def make_member(
 
     Parameters
     ----------
-    thresholds, unfit : which fixtures may be used, see ``family.members.may_be_used``.
+    thresholds, unfit : which fixtures may be used, see ``family.members.are_usable``.
     zero : part zero; None for the usual one.
     same_zero : whether fixtures count as of one pattern only if part zero and the part's turn agree as well.
 
@@ -335,11 +335,11 @@ def make_member(
     if figure.key == LOCATION:
         # A part that is held to a hundredth, but aslant, is not held well.
         values = EffectiveErrors.from_query(query).compute_errors(table)
-    good = may_be_used(table, (), query.tolerance, unfit)
+    good = are_usable(table, (), query.tolerance, unfit)
     loss = np.full(len(table), np.inf)
     loss[good] = compute_losses(values[good], figure)
     best = float(values[good][np.argmin(loss[good])]) if good.any() else float("nan")
-    used = np.flatnonzero(good & may_be_used(table, thresholds, query.tolerance, unfit))
+    used = np.flatnonzero(good & are_usable(table, thresholds, query.tolerance, unfit))
     words, cost, turn = encode_patterns(table.take(used), query.toolkit), loss[used], used >= len(result)
     count = count_distinct_patterns(words, number[used], turn)
     zero = choose_part_zero(query.workpiece) if zero is None else zero

@@ -163,7 +163,7 @@ def run_child() -> None:
     end_with_starter()
     try:
         limit_memory(order["memory"])
-        reply = ("done", answer_order(order, content, out))
+        reply = ("done", run_order(order, content, out))
     except InputError as error:
         reply = ("refused", str(error))
     except Exception as error:
@@ -176,7 +176,7 @@ def run_child() -> None:
     os._exit(0)
 
 
-def answer_order(order: Mapping[str, Any], content: bytes, out: int) -> Any:
+def run_order(order: Mapping[str, Any], content: bytes, out: int) -> Any:
     """Return the result of an order's work; ``PREPARED`` is written to the
     file descriptor ``out`` when the work begins.
     """

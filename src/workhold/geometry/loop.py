@@ -186,7 +186,7 @@ def check_vertices(vertices: ArrayLike, loop: str, place: Place) -> NDArray[np.f
             f"{place(k)} has zero length at ({array[k, 0]:.6g}, {array[k, 1]:.6g}): remove the doubled "
             "vertex (a full circle is drawn as two halves)."
         )
-    refuse_out_of_reach(array, steps, place)
+    refuse_large_radius(array, steps, place)
     array[~is_curved(array[:, 2], steps), 2] = 0.0
     array.setflags(write=False)
     return array
@@ -202,7 +202,7 @@ def is_curved(bulge: NDArray[np.float64], steps: NDArray[np.float64]) -> NDArray
     return (size * steps / 2.0 >= READING) & (size >= STRAIGHT)
 
 
-def refuse_out_of_reach(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
+def refuse_large_radius(array: NDArray[np.float64], steps: NDArray[np.float64], place: Place) -> None:
     """Raise InputError, with the name of the place, where an arc's radius is too large.
 
     ``array`` (N, 3) are the vertices of a loop, ``steps`` (N,) the chords in mm.

@@ -58,7 +58,7 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
     out, changed = np.array(vertices), 0
     for chain in find_arc_chains(segments):
         arcs = [segment for k in chain if isinstance(segment := segments[k], Arc)]
-        circle = None if is_one_already(arcs) else fit_common_circle(arcs, len(chain) == len(segments))
+        circle = None if have_equal_circles(arcs) else fit_common_circle(arcs, len(chain) == len(segments))
         if circle is not None:
             write_chain(out, chain, circle, len(segments))
             changed += len(chain)
@@ -66,7 +66,7 @@ def put_arcs_on_one_circle(vertices: Array, segments: Sequence[Segment]) -> tupl
     return out, changed
 
 
-def is_one_already(arcs: Sequence[Arc]) -> bool:
+def have_equal_circles(arcs: Sequence[Arc]) -> bool:
     """Return whether all arcs have the same centre and radius, within the rounding of a drawing."""
     first, hair = arcs[0], READING / 100
     return all(dist(arc.center, first.center) + abs(arc.radius - first.radius) < hair for arc in arcs)

@@ -247,7 +247,7 @@ def subdivide(
             # Cutting two carriers takes as long as about ten comparisons.
             comparisons.spend(10)
         if a < b:
-            cut_each_other(carriers[a], carriers[b])
+            add_mutual_cuts(carriers[a], carriers[b])
     cut_twins(CutCurveIndex.from_cut_carriers(carriers), further)
     return carriers
 
@@ -324,7 +324,7 @@ def bound_covered(carrier: CutCurve) -> tuple[float, float, float, float]:
     return x0 - ONE, y0 - ONE, x1 + ONE, y1 + ONE
 
 
-def cut_each_other(a: CutCurve, b: CutCurve) -> None:
+def add_mutual_cuts(a: CutCurve, b: CutCurve) -> None:
     """Add cuts to two carriers, in place, where covered parts of both meet, and where a span of one ends on
     the other.
 

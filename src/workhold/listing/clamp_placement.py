@@ -31,7 +31,7 @@ __all__ = [
     "find_axis",
     "find_direction_number",
     "is_bolted",
-    "is_upright",
+    "is_along_columns",
     "find_last_holes",
 ]
 
@@ -54,7 +54,7 @@ def find_direction_number(toolkit: Toolkit) -> int:
     return DIRECTION_NAMES.index(toolkit.arrangements[0].direction or "")
 
 
-def is_upright(direction: IntArray) -> BoolArray:
+def is_along_columns(direction: IntArray) -> BoolArray:
     """Return a mask: True for directions along columns (y), given by
     their index in :data:`DIRECTION_NAMES`.
     """

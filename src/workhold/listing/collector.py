@@ -63,7 +63,7 @@ __all__ = [
     "InterestLimits",
     "ResultCollector",
     "split_into_blocks",
-    "finish",
+    "decide_on_this_thread",
     "decide_and_list",
 ]
 
@@ -73,7 +73,7 @@ Array = NDArray[np.float64]
 BLOCK = 1 << 14
 
 
-def finish(
+def decide_on_this_thread(
     records: list[Array], problem: Problem, cancel: Event | None = None
 ) -> tuple[CandidateFixtures, SearchReport]:
     """Decide records on this thread; return (their fixtures in canonical form, each once, a report on all

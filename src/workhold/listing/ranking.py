@@ -108,7 +108,7 @@ def measure_table_as_touched(table: FixtureTable, query: Query, touched: Touchab
         touched=touched,
         jaw_force=query.jaw_force,
         passed=query.program_to_clear,
-        pressed_up_to=query.pressed_up_to,
+        pressed_top=query.pressed_top,
     )
     quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]] = table.quality[:, [CLOSURE_MARGIN, CLAMP_FREEDOM]]
     return evolve(table, quality=quality)

@@ -63,7 +63,7 @@ from workhold.model.quality import (
     WARNINGS,
 )
 from workhold.model.query import Query
-from workhold.proof.degenerate import hold_nothing
+from workhold.proof.degenerate import cannot_hold
 from workhold.statics.contact_matrix import (
     TouchableFeatures,
     compute_outward_normals,
@@ -241,7 +241,7 @@ def number_seats(records: Array, problem: Problem) -> tuple[IntArray, Array, Arr
     off, holds = bound_places_off(records, problem), np.ones(count, np.bool_)
     vague = np.flatnonzero(~(off <= SAME_PLACE))
     if len(vague):
-        holds[vague] = ~hold_nothing(records[vague], problem)
+        holds[vague] = ~cannot_hold(records[vague], problem)
     return holes, theta, turn, place, off, holds
 
 

@@ -46,8 +46,8 @@ from workhold.listing.clamp_placement import (
     FAR,
     OPENING,
     find_last_holes,
+    is_along_columns,
     is_bolted,
-    is_upright,
 )
 from workhold.listing.identity import allows_half_turns
 from workhold.listing.ranking import measure_table_as_touched
@@ -170,7 +170,7 @@ def make_clamp_columns(found: ClampContacts, seat: IntArray, count: int, problem
             int(np.ptp(found.line)) if len(found.line) else 0,
         ),
     )
-    along = np.where(is_upright(found.direction), found.tip[:, 1], found.tip[:, 0])[chosen]
+    along = np.where(is_along_columns(found.direction), found.tip[:, 1], found.tip[:, 0])[chosen]
     order = np.lexsort(words[::-1])
     order, fresh = split_into_clusters(
         order, mark_changes([word[order] for word in words]), (along, SAME_PLACE)
@@ -407,7 +407,7 @@ class ClampedSeats:
             rows[:, columns].astype(np.int64) for columns in (SEAT, [CLAMPS, CLAMPS + 1], [HOLES, HOLES + 1])
         )
         direction, line = (seats.clamps.integers[clamp, number] for number in (DIRECTION, LINE))
-        upright, hole = is_upright(direction), seats.clamps.holes[bolted, :2].astype(np.int64)
+        upright, hole = is_along_columns(direction), seats.clamps.holes[bolted, :2].astype(np.int64)
         if not self.hardware.bolted:
             hole = np.full_like(hole, FAR)
         locators, clamps = (
@@ -454,6 +454,6 @@ def compute_line_height(integers: IntArray, first: Array, pitch: Array, turn: Ar
     ``integers`` is the clamp's row of integers, ``first`` (2,) the locator's place in mm, ``turn`` (2, 2) the
     matrix that turns vectors into the frame.
     """
-    upright = bool(is_upright(integers[DIRECTION]))
+    upright = bool(is_along_columns(integers[DIRECTION]))
     away = integers[LINE] * pitch[0 if upright else 1] - first[0 if upright else 1]
     return float(turn[1] @ ((away, 0.0) if upright else (0.0, away)))

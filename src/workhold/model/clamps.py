@@ -108,7 +108,7 @@ class ShownClamp:
     pitch: float
 
     @property
-    def is_upright(self) -> bool:
+    def pushes_along_column(self) -> bool:
         """Whether the clamp pushes along a column (parallel to y) rather than along a row."""
         return self.clamping[0] == 0
 

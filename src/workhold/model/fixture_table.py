@@ -102,7 +102,7 @@ class FixtureTable:
         return tuple(getattr(self, column.name) for column in fields(FixtureTable))
 
     @property
-    def working_force(self) -> NDArray[np.float64]:
+    def contact_force_ratios(self) -> NDArray[np.float64]:
         """Contact forces (N, P) per unit of clamping force;
         for two clamps, per unit of the sum of both at the working ratio.
         """
@@ -115,7 +115,7 @@ class FixtureTable:
 
         The forces of two clamps are taken at their working ratio.
         """
-        forces = self.working_force
+        forces = self.contact_force_ratios
         return np.asarray(forces / forces.sum(axis=1, keepdims=True))
 
     def take(self, order: NDArray[Any] | slice) -> FixtureTable:
@@ -277,7 +277,7 @@ def make_fixtures(
     """
     across, along = (places.tolist() for places in compute_peg_places(table, toolkit, workpiece))
     columns, rows, faces = table.column.tolist(), table.row.tolist(), table.face.tolist()
-    forces, flats = table.working_force.tolist(), list_flat_angles(table, toolkit, workpiece)
+    forces, flats = table.contact_force_ratios.tolist(), list_flat_angles(table, toolkit, workpiece)
     theta, travels = table.theta.tolist(), table.jaw_separation.reshape(len(table), -1).tolist()
     pairs = list_clamp_pairs(table) if table.force.ndim == 3 else [None] * len(table)
     on_wall = (

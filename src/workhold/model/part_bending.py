@@ -224,7 +224,7 @@ class BendingFigures:
     material : material of the part.
     thickness : height of the part in mm.
     jaw_force : jaw force in N for which the figures hold; the force of each strap if straps hold the part.
-    is_stated : whether the jaw force is assumed because none was given.
+    is_assumed : whether the jaw force is assumed because none was given.
     stiffness : ratio of the stiffness of the closed jaw to that of one contact; inf for a screw.
     faces : the faces to be cut: face numbers of the outline, "top" and "bottom"; empty for all.
     below : the pads under the part and the clamp on top; None for a part that lies on its level faces or is
@@ -239,7 +239,7 @@ class BendingFigures:
     material: ElasticMaterial
     thickness: float
     jaw_force: float
-    is_stated: bool
+    is_assumed: bool
     stiffness: float
     faces: tuple[int | str, ...]
     below: PadsBelow | None
@@ -268,7 +268,7 @@ class BendingFigures:
         mover : name of the carrier that presses, such as "jaw".
         """
         force = f"At a {mover} force of {unit.format_force(self.jaw_force)}"
-        if self.is_stated:
+        if self.is_assumed:
             force = f"For each {unit.format_force(self.jaw_force)} of {mover} force"
         cut = describe_cut_faces(self.faces)
         where = "the part" if cut is None else f"what is cut of the part ({cut})"
@@ -291,7 +291,7 @@ class BendingFigures:
         """Whether clamping stresses the part by as much as its material's strength, less the error estimate; None
         where the strength or the jaw force is not known.
         """
-        if self.material.strength is None or self.is_stated:
+        if self.material.strength is None or self.is_assumed:
             return None
         return self.stress.rounded.value + self.stress.rounded.error >= self.material.strength
 
@@ -334,7 +334,7 @@ class BendingFigures:
             "strength": self.material.strength,
             "thickness": self.thickness,
             "jaw_force": round_force(self.jaw_force),
-            "is_stated": self.is_stated,
+            "is_assumed": self.is_assumed,
             "jaw": "screw" if self.stiffness == inf else self.stiffness,
             "faces": list(self.faces),
             **({} if self.below is None else {"below": self.below.to_data()}),

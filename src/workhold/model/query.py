@@ -360,7 +360,7 @@ class Query(SearchQuestion):
         return self.foolproof or self.opening is not None
 
     @property
-    def pressed_up_to(self) -> float | None:
+    def pressed_top(self) -> float | None:
         """Height in mm up to which pegs touch a prism: the lesser of thickness and peg height.
 
         It is None for a solid, and where neither is known.
@@ -371,7 +371,7 @@ class Query(SearchQuestion):
     @property
     def knows_heights(self) -> bool:
         """Whether the heights at which pegs touch the part are known."""
-        return self.workpiece.solid is not None or self.pressed_up_to is not None
+        return self.workpiece.solid is not None or self.pressed_top is not None
 
     @property
     def program_to_clear(self) -> tuple[Program, float] | None:

@@ -241,13 +241,13 @@ class ShownCarrier:
     @property
     def used_columns(self) -> set[int]:
         """Columns in which a peg or a clamp stands, or along which a clamp moves."""
-        lines = {clamp.tip.column for clamp in self.bolted if clamp.is_upright}
+        lines = {clamp.tip.column for clamp in self.bolted if clamp.pushes_along_column}
         return lines | {column for column, _ in self.used}
 
     @property
     def used_rows(self) -> set[int]:
         """Rows in which a peg or a clamp stands, or along which a clamp moves."""
-        lines = {clamp.tip.row for clamp in self.bolted if not clamp.is_upright}
+        lines = {clamp.tip.row for clamp in self.bolted if not clamp.pushes_along_column}
         return lines | {row for _, row in self.used}
 
     @property

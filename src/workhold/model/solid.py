@@ -72,7 +72,7 @@ def to_loops(values: Iterable[Iterable[Iterable[Any]]]) -> Loops:
     return loops
 
 
-def check_reals(values: Iterable[Any]) -> tuple[float, ...]:
+def convert_finite_heights(values: Iterable[Any]) -> tuple[float, ...]:
     """Return heights as a tuple of floats; raise InputError if one is not finite."""
     numbers = tuple(convert_real(value) for value in values)
     if not all(map(isfinite, numbers)):
@@ -177,14 +177,14 @@ class SolidOutline:
     faces: tuple[tuple[int, ...], ...] = field(default=(), converter=to_numbers)
     bottom: Loops | None = field(default=None, converter=optional(to_loops))
     top: Loops | None = field(default=None, converter=optional(to_loops))
-    top_heights: tuple[float, ...] = field(default=(), converter=check_reals)
+    top_heights: tuple[float, ...] = field(default=(), converter=convert_finite_heights)
     low: float = field(default=0.0, converter=convert_real)
     runs: tuple[RunRows, ...] = field(default=(), converter=to_runs)
     rising: Loops = field(default=(), converter=to_loops)
-    rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)
+    rising_heights: tuple[float, ...] = field(default=(), converter=convert_finite_heights)
     hanging: Loops = field(default=(), converter=to_loops)
-    hanging_heights: tuple[float, ...] = field(default=(), converter=check_reals)
-    unclear_heights: tuple[float, ...] = field(default=(), converter=check_reals)
+    hanging_heights: tuple[float, ...] = field(default=(), converter=convert_finite_heights)
+    unclear_heights: tuple[float, ...] = field(default=(), converter=convert_finite_heights)
 
     def __attrs_post_init__(self) -> None:
         if self.axis not in AXES:
@@ -293,8 +293,8 @@ class FileSolid:
 
     number: int
     name: str
-    size: tuple[float, ...] = field(converter=check_reals)
-    low: tuple[float, ...] = field(converter=check_reals)
+    size: tuple[float, ...] = field(converter=convert_finite_heights)
+    low: tuple[float, ...] = field(converter=convert_finite_heights)
 
     def __str__(self) -> str:
         size = " x ".join(f"{length:.6g}" for length in self.size)

@@ -36,7 +36,7 @@ from workhold.model.requirements import (
     to_direction_range,
     to_points,
 )
-from workhold.model.solid import BESIDE_TOP, SolidOutline, check_reals
+from workhold.model.solid import BESIDE_TOP, SolidOutline, convert_finite_heights
 from workhold.model.workpiece import Workpiece
 
 __all__ = [
@@ -242,16 +242,16 @@ class SupportRequest:
         default=None, converter=optional(to_rings)
     )
     point: Span | None = field(default=None, converter=optional(to_pair))
-    top_heights: tuple[float, ...] | None = field(default=None, converter=optional(check_reals))
+    top_heights: tuple[float, ...] | None = field(default=None, converter=optional(convert_finite_heights))
     tip_margin: float = field(default=0.0, converter=convert_real)
     head_radius: float = field(
         default=Factory(lambda self: compute_usual_head(self.tip_radius), takes_self=True),
         converter=convert_real,
     )
     rising: Loops = field(default=(), converter=to_loops, eq=False)
-    rising_heights: tuple[float, ...] = field(default=(), converter=check_reals)
+    rising_heights: tuple[float, ...] = field(default=(), converter=convert_finite_heights)
     hanging: Loops = field(default=(), converter=to_loops, eq=False)
-    hanging_heights: tuple[float, ...] = field(default=(), converter=check_reals)
+    hanging_heights: tuple[float, ...] = field(default=(), converter=convert_finite_heights)
 
     def __attrs_post_init__(self) -> None:
         for name, value in (

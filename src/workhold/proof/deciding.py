@@ -29,7 +29,7 @@ from workhold.kernels.proof.interval_newton import compute_jacobians, contract_b
 from workhold.kernels.proof.merging import merge_boxes
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH, OPEN, PROVEN, certify_records, make_discs
 from workhold.model.search_report import GIVEN_UP, UNBOUNDED, UndecidedCandidate
-from workhold.proof.degenerate import hold_nothing
+from workhold.proof.degenerate import cannot_hold
 
 if TYPE_CHECKING:
     from workhold.proof.interval_newton import BoxOutcome
@@ -203,7 +203,7 @@ def decide_records(
     )
     chosen = records[~given_up] if lost else records
     proven, rest = sift_records(chosen, problem, problem.setting)
-    rest = rest[~hold_nothing(rest, problem)]
+    rest = rest[~cannot_hold(rest, problem)]
     course.advance(len(records) - len(rest), len(proven))
     found, reasons, left = escalate_records(rest, problem, course)
     if len(found):

@@ -51,7 +51,7 @@ from workhold.kernels.base.tables import Lattice
 from workhold.kernels.contact import record
 from workhold.kernels.proof.newton_kantorovich import LEAST_REACH
 
-__all__ = ["hold_nothing"]
+__all__ = ["cannot_hold"]
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -84,7 +84,7 @@ class TouchedFeatures(NamedTuple):
         )
 
 
-def hold_nothing(records: Array, problem: Problem) -> Bools:
+def cannot_hold(records: Array, problem: Problem) -> Bools:
     """Return, for each record (N, 19), whether its contacts cannot hold the part, whatever solution is in its
     box.
 

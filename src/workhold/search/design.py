@@ -69,9 +69,9 @@ from workhold.search.shares import (
     Previews,
     answer_by_shares,
     has_body_to_pass,
+    make_one_clamp_query,
     search_best_first,
     search_within_error,
-    select_one_clamp,
     summarize_work,
 )
 from workhold.search.toolkit_search import (
@@ -257,7 +257,7 @@ def is_large(query: Query, threads: int, cancel: Event | None) -> bool:
     if any(one.pegs[0] < 3 for one in query.toolkit.arrangements if one.name in query.types):
         # With two standing pegs there is no bound of the error from the features they touch.
         return False
-    problem = Problem.from_query(select_one_clamp(query, query.toolkit.ways[0]))
+    problem = Problem.from_query(make_one_clamp_query(query, query.toolkit.ways[0]))
     first, end = problem.standing
     steps = list_lattice_steps((problem.frame.standing,), problem.diameter).steps
     # Pairs of chords that the lattice may join. A search looks at a tenth to a thousandth of them.
@@ -433,7 +433,7 @@ def add_reason(result: Result, search: ToolkitSearch, threads: int, cancel: Even
         return result
     proven = 0 if result.proof is None else result.proof.verified
     reason = explain_no_fixture(search, int(search.totals[CONTACTS]), proven, threads, cancel)
-    reason = blame_what_was_asked(reason, search.problem, threads)
+    reason = name_requests_at_fault(reason, search.problem, threads)
     return result if cancel is not None and cancel.is_set() else evolve(result, notes=(reason,))
 
 
@@ -461,7 +461,7 @@ def explain_no_fixture(
     return NoFixture("hold", wording, line)
 
 
-def blame_what_was_asked(reason: Note, problem: Problem, threads: int) -> Note:
+def name_requests_at_fault(reason: Note, problem: Problem, threads: int) -> Note:
     """Return the reason why there is no fixture, changed to name the query's own requests if they are the
     cause.
 

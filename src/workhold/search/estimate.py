@@ -24,7 +24,7 @@ from workhold.fixels.contacts import WALL_END
 from workhold.kernels.base.feature import AXIS_X, AXIS_Y, HALF_EXTENT, IS_ARC, RADIUS, X, Y
 from workhold.kernels.base.tables import NearSpots
 from workhold.listing.canonical_form import make_candidates
-from workhold.listing.collector import finish, split_into_blocks
+from workhold.listing.collector import decide_on_this_thread, split_into_blocks
 from workhold.listing.seat_order import number_seats
 from workhold.listing.seats import ClampedSeats
 from workhold.model.clamps import LOCATORS
@@ -118,7 +118,7 @@ def estimate_one_direction(query: Query, threads: int, cancel: Event | None) -> 
         return 0
     # Only some records, drawn by their weights, are decided.
     chosen, again = draw_by_size(weights, DECIDED)
-    kept, _ = finish([np.concatenate(records)[chosen]], problem, cancel)
+    kept, _ = decide_on_this_thread([np.concatenate(records)[chosen]], problem, cancel)
     proven = len(kept.standing) / len(chosen)
     # The chance of a record grows with its weight, so each stands for as many as any other.
     return round(float((weights[chosen] / again).sum()) * proven)
@@ -249,7 +249,10 @@ def estimate_listed(
         found.append(stretches.select_contacts(records, search.problem))
     every = sum(map(len, found)) // CONTACTS_DECIDED + 1
     collector = ClampedSeats(query, searches[0].problem)
-    some = [thin_contacts(part, search.problem, every) for part, search in zip(found, searches, strict=True)]
+    some = [
+        sample_contacts_by_seat(part, search.problem, every)
+        for part, search in zip(found, searches, strict=True)
+    ]
     # What is not decided quickly is left out.
     hurry = Event()
     hurry.set()
@@ -257,7 +260,7 @@ def estimate_listed(
         return float(stretches.every * every * collector.count_fixtures(shares.find_seats(some, ranges)))
 
 
-def thin_contacts(records: Array, problem: Problem, every: int) -> Array:
+def sample_contacts_by_seat(records: Array, problem: Problem, every: int) -> Array:
     """Return the records (M, 19) of about one in ``every`` seats. All records of a chosen seat are kept.
 
     A seat is the pose that three locators fix.

@@ -25,7 +25,7 @@ from workhold.conventions import SAME_POSE
 from workhold.fixels.fields import PITCH
 from workhold.kernels.base.tables import NearSpots
 from workhold.kernels.curves.block_work import CANDIDATES
-from workhold.limits import refuse_much_work
+from workhold.limits import refuse_long_search
 from workhold.listing.bounds import bound_keys_when_tilted, list_preferred_angles
 from workhold.listing.canonical_form import CandidateFixtures, list_each_once, make_candidates, make_canonical
 from workhold.listing.clamp_contacts import make_contacts_of_candidates
@@ -41,7 +41,7 @@ from workhold.model.query import Query
 from workhold.proof.deciding import DecidingProgress, SearchReport, decide_records
 from workhold.search.cells import SearchBlock, estimate_cost, run_blocks
 from workhold.search.error_limits import ErrorLimit
-from workhold.search.shares import bound_tilted_keys, select_one_clamp
+from workhold.search.shares import bound_tilted_keys, make_one_clamp_query
 from workhold.search.toolkit_search import ANY_ERROR, LEAST_BLOCKS, ToolkitSearch
 
 __all__ = ["LatticeShares", "list_search_blocks", "make_problems", "make_searches", "count_ways"]
@@ -119,7 +119,7 @@ class LatticeShares:
         searches = make_searches(query, threads, cancel)
         blocks = [list_search_blocks(search) for search in searches]
         x0, y0, x1, y1 = query.workpiece.bounds
-        refuse_much_work(
+        refuse_long_search(
             count_ways(blocks),
             (x1 - x0, y1 - y0),
             query.toolkit.carriers[0].pitch,
@@ -303,7 +303,7 @@ def make_problems(query: Query) -> list[Problem]:
     """Return one problem for each direction of the clamp, each with
     one clamp, for contacts that need not close.
     """
-    return [Problem.from_query(select_one_clamp(query, way), pairing=True) for way in query.toolkit.ways]
+    return [Problem.from_query(make_one_clamp_query(query, way), pairing=True) for way in query.toolkit.ways]
 
 
 def list_search_blocks(search: ToolkitSearch) -> list[SearchBlock]:

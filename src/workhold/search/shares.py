@@ -29,7 +29,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.kernels.curves.block_work import CANDIDATES
 from workhold.listing.bounds import bound_keys_when_tilted, list_preferred_angles
 from workhold.listing.canonical_form import CandidateFixtures, list_each_once
-from workhold.listing.collector import BestFixtures, finish
+from workhold.listing.collector import BestFixtures, decide_on_this_thread
 from workhold.listing.ranking import OrderKeys
 from workhold.listing.results import SearchWork, make_result, make_stage_progress, sum_counts
 from workhold.model.notes import Note
@@ -49,7 +49,7 @@ __all__ = [
     "search_best_first",
     "has_body_to_pass",
     "search_within_error",
-    "select_one_clamp",
+    "make_one_clamp_query",
     "bound_tilted_keys",
     "summarize_work",
 ]
@@ -104,7 +104,7 @@ class Previews:
         start = perf_counter()
         if self.newest is None or start < self.next_time:
             return
-        fresh, account = finish([self.newest], self.problem, self.hurry)
+        fresh, account = decide_on_this_thread([self.newest], self.problem, self.hurry)
         self.newest = None
         together = (
             fresh
@@ -199,7 +199,7 @@ def answer_by_shares(
     return evolve(result, notes=(locating.explain_no_fixture(),))
 
 
-def select_one_clamp(query: Query, way: Toolkit) -> Query:
+def make_one_clamp_query(query: Query, way: Toolkit) -> Query:
     """Return a query in the toolkit ``way``, which has one clamp in one direction.
 
     Types, ranking, number of best fixtures and listing go back to their defaults.

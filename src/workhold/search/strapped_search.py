@@ -74,12 +74,12 @@ def find_strapped_fixtures(
         whole,
         table=table.take(slice(0, len(chosen))),
         holds=tuple(holds[: len(chosen)]),
-        notes=(*whole.notes, *remarks_on(holds, query)),
+        notes=(*whole.notes, *remark_if_no_straps_hold(holds, query)),
         complete=whole.complete and is_whole,
     )
 
 
-def remarks_on(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
+def remark_if_no_straps_hold(holds: Sequence[StrappedHold], query: Query) -> list[Note]:
     """Return a list with the remark that straps hold none of the examined seats, with the reason; empty if
     they hold one.
 

@@ -38,7 +38,7 @@ from workhold.search.lattice_pairs import (
     find_pairs_on_edge,
     select_pressed_pairs,
 )
-from workhold.search.shares import has_body_to_pass, select_one_clamp
+from workhold.search.shares import has_body_to_pass, make_one_clamp_query
 from workhold.search.wall_search import find_fixtures_on_edge, make_searches
 
 __all__ = ["LatticePairSearch", "WallShares"]
@@ -249,7 +249,7 @@ class WallShares:
                 [search], lambda edge: zip(repeat(search), search.iterate_fixtures(edge)), ranked, cancel
             )
         searches = make_searches(
-            select_one_clamp(query, toolkit.ways[0]) if pairing else query, toolkit.ways, pairing
+            make_one_clamp_query(query, toolkit.ways[0]) if pairing else query, toolkit.ways, pairing
         )
         collector = (ClampedSeats if pairing else RankedTable)(query, searches[0].problem)
         return cls(searches, partial(find_fixtures_on_edge, searches), collector, cancel)

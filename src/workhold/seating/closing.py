@@ -251,7 +251,7 @@ class ClosingMotion:
             write_escape_directions(np.ascontiguousarray(configs), obstacles, axes, ranges, out)
         return out
 
-    def find_leaving_at_stop(
+    def find_escaping_at_stop(
         self, starts: Array, ends: Array, stopped: NDArray[np.bool_]
     ) -> NDArray[np.bool_]:
         """Return for each of N paths whether it met the stop and the part can be taken away at one of its

@@ -48,7 +48,7 @@ __all__ = [
     "find_contact_normals",
     "solve_contact_forces",
     "is_equilibrium",
-    "settle_on_wall",
+    "write_forces_on_wall",
     "judge_candidates",
     "complete_with_forces",
 ]
@@ -112,7 +112,9 @@ def find_contact_normals(
     return np.array(places), np.array(normals), np.array(moves, dtype=np.float64)
 
 
-def settle_on_wall(candidates: Array, boundary: ObstacleBoundary, pattern: Pattern, size: float) -> None:
+def write_forces_on_wall(
+    candidates: Array, boundary: ObstacleBoundary, pattern: Pattern, size: float
+) -> None:
     """Write the columns FORCE, RESIDUAL and CLEAR of candidates (N, 24) of a pattern with a wall, in place.
 
     RESIDUAL is inf where the contacts do not touch, the jaw separation is out of reach, or the forces are not

@@ -57,7 +57,7 @@ from workhold.kernels.seating.slides import (
 from workhold.kernels.seating.three_contacts import ROOT_LENGTH, write_three_contacts
 from workhold.seating.antipodal_contacts import find_antipodal_candidates, find_parallel_candidates
 from workhold.seating.closing import ClosingMotion, DescentCache, DescentPaths, ensure_room, fill_rows
-from workhold.seating.contact_forces import complete_with_forces, judge_candidates, settle_on_wall
+from workhold.seating.contact_forces import complete_with_forces, judge_candidates, write_forces_on_wall
 from workhold.seating.obstacle_boundary import ObstacleBoundary
 from workhold.seating.part_features import HullSide
 from workhold.seating.pattern import Pattern, PegSubset, list_subsets
@@ -450,7 +450,7 @@ def find_wall_equilibria(boundary: ObstacleBoundary, pattern: Pattern, size: flo
     """Return all equilibria of a part and a pattern with a wall; ``size`` is the part's in mm."""
     pressed = find_antipodal_candidates(boundary, pattern)
     candidates = np.concatenate([pressed, find_wall_candidates(boundary, pattern)])
-    settle_on_wall(candidates, boundary, pattern, size)
+    write_forces_on_wall(candidates, boundary, pattern, size)
     finder = ManifoldFinder(boundary, pattern)
     loose = join_manifolds(
         [

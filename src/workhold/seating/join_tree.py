@@ -182,7 +182,7 @@ class JoinTree:
         first = len(configs) + len(off.lying)
         parts = off.both, follow_pass_descents(found, closing, seats), off.one
         starts, ends, how = (np.concatenate([part[k] for part in parts]) for k in range(3))
-        leaves = closing.find_leaving_at_stop(starts, ends, how == AT_THE_STOP).astype(np.int8)
+        leaves = closing.find_escaping_at_stop(starts, ends, how == AT_THE_STOP).astype(np.int8)
         doubtful, count = np.empty((len(found.doubtful) + len(ends), 4)), len(found.doubtful)
         doubtful[:count] = found.doubtful[:, CONFIG]
         places = np.empty(len(ends) - len(off.falling), np.int64)

@@ -146,7 +146,7 @@ class JawCurves:
         return rows, slid
 
     @cached_property
-    def after_one(self) -> tuple[Array, Array]:
+    def two_peg_rows(self) -> tuple[Array, Array]:
         """The rows and the slides of two pegs, numbered 1 and 2; number 0 is for the single peg of the other
         jaw.
         """
@@ -163,7 +163,7 @@ class JawCurves:
         return self.slides[:, SLIDE_FIRST : SLIDE_SECOND + 1].astype(np.int64)
 
     @cached_property
-    def pockets(self) -> int:
+    def pocket_count(self) -> int:
         """Number of rows in which one peg sits in a pocket; these rows come before all others."""
         return int(self.rows[:, KIND].sum())
 
@@ -227,7 +227,7 @@ class TwoContactCurves:
             known = JawCurves.find_known(boundary, subset)
             rows, slid = known.number_rows_by_pegs(np.array([*subset.numbers, -1.0]))
             # Pockets, of which curves are none, come first.
-            rows[known.pockets :, SOURCE] += curves_before
+            rows[known.pocket_count :, SOURCE] += curves_before
             parts.append((rows, known.curves, known.reals, slid))
             jaws[side] = known, before, float(subset.shift[2])
             before, curves_before = before + len(rows), curves_before + len(known.curves)
@@ -249,7 +249,7 @@ class TwoContactCurves:
                 subset.pattern, np.flatnonzero(np.equal(subset.sides, side)).tolist()
             )
         known = JawCurves.find_known(boundary, own)
-        rows, slides = (known.rows, known.slides) if subset.sides[0] == side else known.after_one
+        rows, slides = (known.rows, known.slides) if subset.sides[0] == side else known.two_peg_rows
         given = make_held_parts(boundary, subset.pattern, rows, known.curves, known.reals)
         return cls(*given, slides, {side: (known, 0, float(own.shift[2]))})
 

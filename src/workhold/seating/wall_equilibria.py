@@ -78,7 +78,7 @@ class WallEquilibria:
         return self.pattern.half_plane
 
     @property
-    def is_upright(self) -> bool:
+    def runs_along_y(self) -> bool:
         """Whether the wall runs along y, perpendicular to the tip's travel."""
         return self.half_plane[0] != 0.0
 
@@ -101,7 +101,7 @@ class WallEquilibria:
         ux, uy, off = self.half_plane
         x, y, radius = self.boundary.hull.rows[piece, :3].tolist()
         c, s = cos(theta), sin(theta)
-        return float((ux + uy) * (off + radius) - (c * x - s * y if self.is_upright else s * x + c * y))
+        return float((ux + uy) * (off + radius) - (c * x - s * y if self.runs_along_y else s * x + c * y))
 
     @cached_property
     def runs(self) -> list[tuple[int, float, float]]:
@@ -178,13 +178,13 @@ class WallEquilibria:
         contacts and forces that may be an equilibrium, see ``kernels.seating.columns``.
         """
         fixed, pegs = fixed.copy(), self.standing_part.pegs
-        if self.is_upright:
+        if self.runs_along_y:
             # Seen a quarter turn further, where the wall is level.
             fixed[:, THETA] += pi / 2.0
             fixed[:, PLACE_Y], fixed[:, PLACE_X] = fixed[:, PLACE_X].copy(), 0.0
             pegs = np.stack([-pegs[:, 1], pegs[:, 0]], axis=1)
         met = fill_rows(CANDIDATE_LENGTH, 64, write_fourths, fixed, 1, self.make_held_part(pegs))
-        if self.is_upright:
+        if self.runs_along_y:
             met[:, THETA] -= pi / 2.0
             met[:, PLACE_X], met[:, PLACE_Y] = met[:, PLACE_Y].copy(), -met[:, PLACE_X]
         for first in (PEG, PIECE):
@@ -206,9 +206,9 @@ class WallEquilibria:
                 self.find_resting_place(side.pieces[0], theta),
             )
             fixed.append(
-                make_candidate((theta, *((known, 0.0) if self.is_upright else (0.0, known)), 0.0), ends)
+                make_candidate((theta, *((known, 0.0) if self.runs_along_y else (0.0, known)), 0.0), ends)
             )
-            for ahead, up, held in self.list_tip_pockets(theta) if self.is_upright else ():
+            for ahead, up, held in self.list_tip_pockets(theta) if self.runs_along_y else ():
                 place = known, float(self.pattern.pegs[TIP, 1]) - up
                 out.append(
                     make_candidate((theta, *place, known + ahead - self.pattern.pegs[TIP, 0]), ends + held)
@@ -256,7 +256,7 @@ class WallEquilibria:
                 if abs(level) >= size:
                     continue
                 for turn in (1.0, -1.0):
-                    theta = add_turns_until_past(
+                    theta = raise_by_whole_turns(
                         low, atan2(uy, ux) - atan2(dy, dx) + turn * acos(level / size)
                     )
                     if theta <= high:
@@ -279,13 +279,13 @@ class WallEquilibria:
         found = fill_rows(
             CANDIDATE_LENGTH, 64, write_tip_in_pocket, self.standing_part, places, pieces, *work
         )
-        if not self.is_upright:
+        if not self.runs_along_y:
             return self.add_locator_contacts(found)
         out = []
         for piece, low, high in self.runs:
             x, y = self.boundary.hull.rows[piece, :2].tolist()
             for (vx, vy), held in zip(places.tolist(), pieces.tolist(), strict=True):
-                theta = add_turns_until_past(low, atan2(0.0, self.half_plane[0]) - atan2(vy - y, vx - x))
+                theta = raise_by_whole_turns(low, atan2(0.0, self.half_plane[0]) - atan2(vy - y, vx - x))
                 if hypot(vx - x, vy - y) <= SAME_PLACE or theta > high:
                     continue
                 c, s = cos(theta), sin(theta)
@@ -347,7 +347,7 @@ class WallEquilibria:
                 angles = (
                     [-atan2(dy, dx), pi - atan2(dy, dx)] if is_arc else [-atan2(-row[AXIS_X], row[AXIS_Y])]
                 )
-                for theta in (add_turns_until_past(low, angle) for angle in angles):
+                for theta in (raise_by_whole_turns(low, angle) for angle in angles):
                     if theta > high:
                         continue
                     c, s = cos(theta), sin(theta)
@@ -390,7 +390,7 @@ def compute_least_curvature(ahead: float, signed: float | None) -> tuple[float, 
     return (float(values[0]) if values[1] > 0.0 else np.nan), float(ways[0, 0]), float(ways[1, 0])
 
 
-def add_turns_until_past(low: float, theta: float) -> float:
+def raise_by_whole_turns(low: float, theta: float) -> float:
     """Return the smallest angle in radians that is at least ``low`` and differs from ``theta`` by whole turns
     (2 pi).
     """

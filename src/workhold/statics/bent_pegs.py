@@ -173,7 +173,7 @@ def compute_bent_pegs(
     workpiece: Workpiece,
     toolkit: Toolkit,
     *,
-    pressed_up_to: float | None = None,
+    pressed_top: float | None = None,
     jaw_force: float | None = None,
     lift: float = 0.0,
 ) -> BentPegs | None:
@@ -183,17 +183,17 @@ def compute_bent_pegs(
 
     Parameters
     ----------
-    pressed_up_to : height in mm up to which pegs press on a prism; not needed for a solid.
+    pressed_top : height in mm up to which pegs press on a prism; not needed for a solid.
     jaw_force : in N; None for figures at a jaw force of 1 kN.
     lift : height of the part above the plates, in mm.
     """
-    if workpiece.solid is None and pressed_up_to is None:
+    if workpiece.solid is None and pressed_top is None:
         return None
     touched = TouchableFeatures.from_workpiece(workpiece, toolkit)
     contacts = touched.compute_for_fixture(fixture, toolkit)
     carriers = np.array([toolkit.find_carrier_numbers(peg.carrier for peg in fixture.pegs)])
     faces = np.array([[peg.face for peg in fixture.pegs]])
-    runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, contacts.points, pressed_up_to, lift)
+    runs = PinRuns.from_fixtures(faces, carriers, workpiece, toolkit, contacts.points, pressed_top, lift)
     silhouette = find_silhouette_extremes(workpiece)
     middle, worst = (
         compute_bent_pins(contacts, runs.diameter, heights, jaw_force, touched.length, silhouette)

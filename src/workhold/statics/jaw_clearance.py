@@ -232,12 +232,12 @@ def join_advice(near: Iterable[ToolNearVise], jaws: JawPair, program: Program) -
     """Return a sentence with a remedy for each body that tools come too near, in the order of
     :func:`list_worst`.
     """
-    said = dict.fromkeys(advise_against(one.body, jaws, program) for one in list_worst(near))
+    said = dict.fromkeys(suggest_remedy(one.body, jaws, program) for one in list_worst(near))
     words = "; or ".join(said)
     return f"{words[:1].upper()}{words[1:]}."
 
 
-def advise_against(body: str, jaws: JawPair, program: Program) -> str:
+def suggest_remedy(body: str, jaws: JawPair, program: Program) -> str:
     """Return a clause with a remedy for tools that come too near a body of the vise."""
     match body:
         case "work stop" if len(jaws.stops) > 1:

@@ -61,7 +61,7 @@ __all__ = [
     "read_jaw_stiffness",
     "describe_jaw",
     "compute_load_cases",
-    "compute_shared_forces",
+    "compute_forces_with_jaw_stiffness",
 ]
 
 Array = NDArray[np.float64]
@@ -114,7 +114,7 @@ def describe_jaw(stiffness: float, toolkit: Toolkit) -> str:
     return f"{toolkit.locked} {state}"
 
 
-def compute_shared_forces(free: Array, closing: Array, stiffness: float) -> Array:
+def compute_forces_with_jaw_stiffness(free: Array, closing: Array, stiffness: float) -> Array:
     """Return the peg forces (..., P, 3) per unit of a load's g_x, g_y and moment, when jaws of this stiffness
     share the load.
 
@@ -346,7 +346,7 @@ def compute_load_cases(
     # Rows: force of each peg per unit of (g_x, g_y, moment, jaw force); see kernels.contact.contact_matrix.
     forces = contact_matrices.inverses[0].T / np.array([1.0, 1.0, touched.length, 1.0])
     # The jaw was closed before the load came, so its own column stays.
-    forces[:, :3] = compute_shared_forces(forces[:, :3], contact_matrices.closing[0], stiffness)
+    forces[:, :3] = compute_forces_with_jaw_stiffness(forces[:, :3], contact_matrices.closing[0], stiffness)
     motions = None
     if friction is not None:
         on_part = find_contacts_on_part(fixture, workpiece, toolkit, touched, contact_matrices)

@@ -118,7 +118,7 @@ class PinRuns:
         workpiece: Workpiece,
         toolkit: Toolkit,
         points: Array,
-        pressed_up_to: float | None,
+        pressed_top: float | None,
         lift: float = 0.0,
     ) -> PinRuns:
         """Return the ranges of heights of the pegs of N fixtures.
@@ -127,14 +127,14 @@ class PinRuns:
         ----------
         faces, carriers : (N, P) numbers of the faces touched, and of the pegs' carriers.
         points : (N, P, 2) peg centres relative to the centre of the part, in the part's frame, in mm.
-        pressed_up_to : height in mm up to which pegs press on a prism; None where not known, and for a solid.
+        pressed_top : height in mm up to which pegs press on a prism; None where not known, and for a solid.
         lift : height of the part above the plates, in mm.
         """
         each = np.array([2 * c.peg_radius if c.has_lattice else np.nan for c in toolkit.carriers])
         diameter = each.take(carriers)
         diameter[diameter == 0.0] = np.nan
         if workpiece.solid is None:
-            top = np.nan if pressed_up_to is None else float(pressed_up_to)
+            top = np.nan if pressed_top is None else float(pressed_top)
             low, high = np.zeros(diameter.shape), np.full(diameter.shape, top)
         else:
             low, high = find_runs_on_solid(faces, points + np.array(workpiece.center), workpiece)

@@ -25,7 +25,7 @@ from workhold.model.program import Program
 from workhold.model.result import Result
 from workhold.model.workpiece import Workpiece
 from workhold.statics.contact_matrix import ContactMatrices, TouchableFeatures
-from workhold.statics.loads import compute_shared_forces, read_jaw_stiffness
+from workhold.statics.loads import compute_forces_with_jaw_stiffness, read_jaw_stiffness
 from workhold.statics.path_forces import list_path_forces
 from workhold.statics.program_clearance import name_element, rename_element
 from workhold.units import Unit
@@ -243,7 +243,7 @@ def compute_cutting_figures(matrices: ContactMatrices, touched: TouchableFeature
         rows = known[part]
         free = np.swapaxes(inverses[part, :3], 1, 2) / make_scale(touched)
         out[rows, 0] = path.find_worst(make_reaction_functions(free, held[part])).value
-        locked = compute_shared_forces(free, matrices.closing[rows], inf)
+        locked = compute_forces_with_jaw_stiffness(free, matrices.closing[rows], inf)
         out[rows, 1] = path.find_worst(-locked / held[part, :, None]).value
     return out
 
@@ -308,7 +308,7 @@ def find_cutting_needs(
         rows = known[start : start + BLOCK]
         held = matrices.inverses[rows, 3]
         free = np.swapaxes(matrices.inverses[rows, :3], 1, 2) / make_scale(touched)
-        own = compute_shared_forces(free, matrices.closing[rows], read_jaw_stiffness(jaw))
+        own = compute_forces_with_jaw_stiffness(free, matrices.closing[rows], read_jaw_stiffness(jaw))
         need = path.find_worst(-own / held[..., None])
         force = need.value if jaw_force is None else np.full(len(rows), float(jaw_force))
         # Each contact by itself, because each has its own share of the jaw force.

@@ -125,7 +125,7 @@ def measure_quality(
     touched: TouchableFeatures | None = None,
     jaw_force: float | None = None,
     passed: tuple[Program, float] | None = None,
-    pressed_up_to: float | None = None,
+    pressed_top: float | None = None,
 ) -> Array:
     """Return figures of quality of a table of fixtures, from their holes, poses and faces alone.
 
@@ -138,7 +138,7 @@ def measure_quality(
     jaw_force : in N, for the warning that a peg lets go under a load; None for no such warning.
     passed : a program, and the height of pegs in mm; adds a column for the program clearance. The program's
         cutting forces count as loads. None for no program.
-    pressed_up_to : height in mm up to which pegs press on a prism, to compute how far they bend; None where
+    pressed_top : height in mm up to which pegs press on a prism, to compute how far they bend; None where
         not known. Not needed for a solid.
 
     Returns
@@ -153,7 +153,7 @@ def measure_quality(
     tolerances = np.array([tolerance.peg, tolerance.face])
     direction, sizes = find_main_direction(workpiece), measure_faces(workpiece)
     judging = JudgingLimits.from_toolkit(known.length, toolkit, tolerance, jaw_force)
-    has_pins = workpiece.solid is not None or pressed_up_to is not None
+    has_pins = workpiece.solid is not None or pressed_top is not None
     known_figures = len(FIGURES) if has_pins else BEFORE_PINS
     out = np.empty((len(table), known_figures + (passed is not None)))
 
@@ -200,7 +200,7 @@ def measure_quality(
         filled[:, SMALLEST_FACE] = find_smallest(measure_touched(block, toolkit, workpiece, sizes))
         if has_pins:
             runs = PinRuns.from_fixtures(
-                faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_up_to
+                faces, carriers, workpiece, toolkit, contact_matrices.points, pressed_top
             )
             silhouette = corners, arcs
             filled[:, PIN_FIGURES] = measure_most_bent(
@@ -301,7 +301,7 @@ def measure_fixture(
         asked,
         jaw_force=force,
         passed=result.query.program_to_clear,
-        pressed_up_to=result.query.pressed_up_to,
+        pressed_top=result.query.pressed_top,
     )
     return make_fixture_of_row(evolve(row, quality=quality), result.toolkit, 0, result.workpiece)
 

@@ -91,13 +91,13 @@ class StrappedPart:
         return np.vstack([self.compute_wrenches(points, ways) for points in ends])
 
     @cached_property
-    def pressing_below(self) -> Array:
+    def pressure_wrenches_below(self) -> Array:
         """Wrenches (R, 6) of the R unit pressures from below."""
         points = self.below.centres if isinstance(self.below, PressedPolygon) else self.below
         return self.compute_level_wrenches(points, 0.0, (0.0, 0.0, 1.0))
 
     @cached_property
-    def rubbing_below(self) -> Array:
+    def friction_wrenches_below(self) -> Array:
         """Wrenches (C, 16, 6) of unit friction forces from below: in each
         of C cells or supports, in 16 directions.
         """
@@ -200,14 +200,14 @@ class StrapsOnPart:
         """Wrenches (R + 1, 6): of the R unit pressures below, then of
         all tips together pressing with 1 N each.
         """
-        return np.vstack([self.part.pressing_below, self.down.sum(axis=0)])
+        return np.vstack([self.part.pressure_wrenches_below, self.down.sum(axis=0)])
 
     @cached_property
     def rubbing(self) -> Array:
         """Wrenches (C + K, 16, 6) of unit friction forces in 16
         directions: in the C cells below, then at the K tips.
         """
-        return np.concatenate([self.part.rubbing_below, self.tip_friction])
+        return np.concatenate([self.part.friction_wrenches_below, self.tip_friction])
 
     @cached_property
     def bearing(self) -> Array:

@@ -51,11 +51,13 @@ def are_beside_rising(
     starts, ends = move_into_part(pose, tip), move_into_part(pose, ends)
     for height in np.unique(heights).tolist():
         own = np.flatnonzero(heights == height)
-        out[own] = keep_off(rising, height, starts[own], ends[own], tip_radius)
+        out[own] = keep_clear_of_regions(rising, height, starts[own], ends[own], tip_radius)
     return out
 
 
-def keep_off(regions: LevelRegions, height: float, starts: Array, ends: Array, radius: float) -> BoolArray:
+def keep_clear_of_regions(
+    regions: LevelRegions, height: float, starts: Array, ends: Array, radius: float
+) -> BoolArray:
     """Return a mask (N,): True for capsules that keep 0.01 mm, or a little less, from the regions at a height.
 
     A capsule is all points within ``radius`` mm of the segment from ``starts[k]`` to ``ends[k]``, (N, 2). A

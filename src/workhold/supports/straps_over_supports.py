@@ -338,8 +338,8 @@ class SupportedStraps:
     def keep_motion(self, motion: Array, power: float) -> None:
         """Append a motion (6,) and the power of the load that drives it, for bounds."""
         part = self.whole
-        forces = part.pressing_below
-        rubbed = (part.rubbing_below @ motion).max(axis=1, initial=0.0)
+        forces = part.pressure_wrenches_below
+        rubbed = (part.friction_wrenches_below @ motion).max(axis=1, initial=0.0)
         pressed = forces @ motion + part.friction * rubbed
         size = 1.0 + np.abs(forces * motion).sum(axis=1) + part.friction * np.abs(rubbed)
         self.allowed = np.column_stack([self.allowed, pressed <= 2.0 * BROKEN * size])

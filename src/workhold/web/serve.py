@@ -21,7 +21,7 @@ from workhold.web.guard import AllowedHosts, ServerLimits
 from workhold.web.origins import AllowedOrigins
 from workhold.web.state import ServerState
 
-__all__ = ["bound_socket", "is_for_others", "make_server", "run_server"]
+__all__ = ["open_bound_socket", "is_for_others", "make_server", "run_server"]
 
 # Seconds a client has to send the first lines of a request, and a response to end when the server stops.
 HEADER_SECONDS = 15.0
@@ -159,7 +159,7 @@ def run_server(
     InputError
         When the server cannot listen at this address.
     """
-    listener = bound_socket(host, port)
+    listener = open_bound_socket(host, port)
     shown = f"http://{format_host(host)}:{listener.getsockname()[1]}/"
     if token is not None:
         shown += f"?token={token}"
@@ -203,7 +203,7 @@ def make_server(
     return Server(config, listening)
 
 
-def bound_socket(host: str, port: int) -> socket.socket:
+def open_bound_socket(host: str, port: int) -> socket.socket:
     """Return a socket bound to an address, which the server then listens at.
 
     Raises InputError for a host that this machine does not have, and a port that is taken.

@@ -145,7 +145,7 @@ class Interpreter:
             if whole:
                 self.count_whole(whole, codes, values)
         count = len(self.path.rows)
-        used = self.set_up(codes, functions, values)
+        used = self.update_modal_state(codes, functions, values)
         used |= self.run_block_move(codes, values)
         if self.away and any(row[2] for row in self.path.rows[count:]):
             raise InputError(
@@ -217,7 +217,9 @@ class Interpreter:
             for letter in letters:
                 values[letter] *= LAST_DIGIT[unit.name]
 
-    def set_up(self, codes: dict[str, str], functions: list[str], values: dict[str, float]) -> set[str]:
+    def update_modal_state(
+        self, codes: dict[str, str], functions: list[str], values: dict[str, float]
+    ) -> set[str]:
         """Update everything modal except the motion: feed, speed, tool, its length, unit, plane, zero, and
         distance mode.
 
@@ -231,7 +233,7 @@ class Interpreter:
                 self.passed.setdefault(f"M{function}", []).append(self.path.line)
                 used |= OF_FUNCTIONS
         if codes:
-            used |= self.set_codes(codes, values)
+            used |= self.apply_modal_codes(codes, values)
         if "F" in values:
             modes.feed = values["F"]
         if "S" in values:
@@ -253,7 +255,7 @@ class Interpreter:
             self.change_length_offset(codes["length"], values.get("H"))
         return used
 
-    def set_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
+    def apply_modal_codes(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Put the modal codes of a block in force, and note the codes that do not affect the path.
 
         Return the letters of the words that belong to these codes. Raises InputError for a spline, and for a
@@ -334,7 +336,7 @@ class Interpreter:
         elif once in VISITS:
             return used | self.move_once(codes, values)
         elif once is not None:
-            return used | self.set_zero(codes, values)
+            return used | self.handle_zero_shift(codes, values)
         self.change_motion(codes)
         motion, cycle = self.modes.motion, self.modes.cycle
         if cycle is not None:
@@ -405,7 +407,7 @@ class Interpreter:
         # P numbers the places of G30.
         return axes | ROTARY | ({"P"} if once == "30" else set())
 
-    def set_zero(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
+    def handle_zero_shift(self, codes: dict[str, str], values: dict[str, float]) -> set[str]:
         """Handle G52, G92, G92.1 or G92.2, and return the axis letters used.
 
         Only codes that leave the zero as it is are accepted: G52 with zeros, G92.1 and G92.2 where no offset

@@ -72,7 +72,7 @@ class BendingPart(FormPart):
     strength: Above | None = Field(description="MPa from which the material yields; null where not known")
     thickness: Above = Field(description="height of the part in mm")
     jaw_force: Above = Field(description="N; of each strap where straps hold the part")
-    is_stated: bool = Field(
+    is_assumed: bool = Field(
         description="whether the force is a mere convention, because nobody said how hard the jaws press"
     )
     jaw: Literal["screw"] | Size = Field(description="what keeps the jaw closed under loads")
@@ -106,7 +106,7 @@ class BendingPart(FormPart):
             material=material,
             thickness=self.thickness,
             jaw_force=self.jaw_force,
-            is_stated=self.is_stated,
+            is_assumed=self.is_assumed,
             stiffness=inf if isinstance(self.jaw, str) else self.jaw,
             faces=tuple(self.faces),
             below=None

@@ -271,7 +271,7 @@ class WrittenBlock:
         """Return the columns of numbers for :func:`list_fixture_rows`."""
         table, columns = self.table, list[list[Any]]()
         for k in self.contacts:
-            numbers = (table.column, table.row, self.x, self.y, table.face, table.working_force)
+            numbers = (table.column, table.row, self.x, self.y, table.face, table.contact_force_ratios)
             columns += [array[:, k].tolist() for array in numbers]
         figures = [table.quality[:, number] for number in self.known]
         moved = [array.tolist() for array in (*np.atleast_2d(table.jaw_separation.T), *figures)]

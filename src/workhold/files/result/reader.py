@@ -409,6 +409,6 @@ def add_missing_figures(table: FixtureTable, query: Query) -> FixtureTable:
         *asked,
         jaw_force=query.jaw_force,
         passed=query.program_to_clear,
-        pressed_up_to=query.pressed_up_to,
+        pressed_top=query.pressed_top,
     )
     return evolve(table, quality=np.where(wanted, figures, table.quality))

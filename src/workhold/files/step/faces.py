@@ -31,7 +31,7 @@ __all__ = [
     "HeightRange",
     "SolidFace",
     "is_level",
-    "is_upright",
+    "is_parallel_to_z",
     "make_layers",
     "classify_lie",
     "compute_plane_height",
@@ -250,7 +250,7 @@ def describe_face_kind(surface: Any, lie: Lie) -> str:
     return names.get(kind, "free-form surface")
 
 
-def is_upright(axis: Any) -> bool:
+def is_parallel_to_z(axis: Any) -> bool:
     """Return whether Open CASCADE's axis is parallel to z."""
     return split_direction(axis.Direction(), 2)[1] <= ALIGNED
 
@@ -269,7 +269,7 @@ def find_fold_height(surface: Any) -> float | None:
     kind = surface.GetType()
     if kind == occ.GeomAbs_Sphere:
         return float(surface.Sphere().Location().Z())
-    if kind == occ.GeomAbs_Torus and is_upright(surface.Torus().Axis()):
+    if kind == occ.GeomAbs_Torus and is_parallel_to_z(surface.Torus().Axis()):
         return float(surface.Torus().Location().Z())
     if kind == occ.GeomAbs_Cylinder and is_level(surface.Cylinder().Axis()):
         return float(surface.Cylinder().Location().Z())

@@ -41,7 +41,7 @@ from workhold.files.step.projected import (
     list_projected_curves,
     refuse_others,
 )
-from workhold.files.step.strips import Strip, make_run_rows, make_strips
+from workhold.files.step.strips import Strip, make_run_rows, make_touchable_strips
 from workhold.geometry.loop import compute_signed_area, make_loop_segments
 from workhold.geometry.segment import Arc, Line, Segment, are_parallel_lines
 from workhold.geometry.subdivision import (
@@ -222,7 +222,7 @@ class StandingSolid:
             return self.known_outlines[key]
         walls = self.make_walls(top, low)
         loops = self.find_border(low if low > 0.0 else -inf, top + head_room, walls, silhouette)
-        strips = tuple(tuple(make_strips(loop, walls, least_band)) for loop in loops)
+        strips = tuple(tuple(make_touchable_strips(loop, walls, least_band)) for loop in loops)
         outline = HeightOutline(strips, top, head_room, least_band)
         if not silhouette:
             self.known_outlines[key] = outline

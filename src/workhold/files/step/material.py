@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from workhold.conventions import SAME_HEIGHT, SHORTEST
 from workhold.files.step.edge_curves import EdgeCurve
-from workhold.files.step.faces import SolidFace, find_surface, is_upright
+from workhold.files.step.faces import SolidFace, find_surface, is_parallel_to_z
 from workhold.files.step.library import occ
 from workhold.geometry.segment import Arc, Line, Point
 
@@ -213,7 +213,7 @@ def find_cone(face: SolidFace) -> Sheet | None:
     reaches over both sides of its tip.
     """
     surface = occ.BRepAdaptor_Surface(face.shape)
-    if surface.GetType() != occ.GeomAbs_Cone or not is_upright(surface.Cone().Axis()):
+    if surface.GetType() != occ.GeomAbs_Cone or not is_parallel_to_z(surface.Cone().Axis()):
         return None
     cone = surface.Cone()
     ends = surface.FirstVParameter(), surface.LastVParameter()

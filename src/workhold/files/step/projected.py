@@ -41,7 +41,7 @@ from workhold.files.step.edge_curves import (
     make_arc_between_angles,
     make_edge_curve,
 )
-from workhold.files.step.faces import SLOPING, SolidFace, find_surface, is_level, is_upright
+from workhold.files.step.faces import SLOPING, SolidFace, find_surface, is_level, is_parallel_to_z
 from workhold.files.step.library import list_sub_shapes, occ
 from workhold.geometry.segment import (
     Arc,
@@ -175,10 +175,10 @@ def cut_face_at_height(face: SolidFace, z: float) -> list[Found]:
         return make_circles(ball.Location(), sqrt(max(square, 0.0)))
     if kind == occ.GeomAbs_Cylinder and is_level(surface.Cylinder().Axis()):
         return cut_lying_cylinder(surface, surface.Cylinder(), z)
-    if kind == occ.GeomAbs_Cone and is_upright(surface.Cone().Axis()):
+    if kind == occ.GeomAbs_Cone and is_parallel_to_z(surface.Cone().Axis()):
         half, apex = surface.Cone().SemiAngle(), surface.Cone().Apex()
         return make_circles(apex, abs((z - apex.Z()) * sin(half) / cos(half)))
-    if kind == occ.GeomAbs_Torus and is_upright(surface.Torus().Axis()):
+    if kind == occ.GeomAbs_Torus and is_parallel_to_z(surface.Torus().Axis()):
         ring = surface.Torus()
         square = ring.MinorRadius() ** 2 - (z - ring.Location().Z()) ** 2
         reach = sqrt(max(square, 0.0))
@@ -186,7 +186,7 @@ def cut_face_at_height(face: SolidFace, z: float) -> list[Found]:
         return make_circles(ring.Location(), *radii)
     if kind == occ.GeomAbs_Torus and is_level(surface.Torus().Axis()) and is_open(surface.Torus()):
         return cut_lying_ring(surface, z)
-    if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
+    if kind == occ.GeomAbs_SurfaceOfRevolution and is_parallel_to_z(surface.AxeOfRevolution()):
         return cut_turned_surface(surface, z)
     return cut_edges(face.shape, z)
 
@@ -201,7 +201,7 @@ def has_plain_cuts(face: SolidFace) -> bool:
         occ.GeomAbs_SurfaceOfRevolution: lambda: surface.AxeOfRevolution(),
     }
     if kind in upright:
-        return is_upright(upright[kind]())
+        return is_parallel_to_z(upright[kind]())
     if kind == occ.GeomAbs_Cylinder:
         return is_level(surface.Cylinder().Axis())
     return bool(kind in (occ.GeomAbs_Plane, occ.GeomAbs_Sphere))
@@ -318,12 +318,12 @@ def find_folds(face: SolidFace) -> list[Found]:
         return list(find_ruled_folds(surface, kind == occ.GeomAbs_Cylinder))
     if kind == occ.GeomAbs_Torus:
         ring = surface.Torus()
-        if is_upright(ring.Axis()):
+        if is_parallel_to_z(ring.Axis()):
             major, minor = ring.MajorRadius(), ring.MinorRadius()
             return make_circles(ring.Location(), major + minor, major - minor)
         if is_level(ring.Axis()):
             return find_lying_ring_folds(surface)
-    if kind == occ.GeomAbs_SurfaceOfRevolution and is_upright(surface.AxeOfRevolution()):
+    if kind == occ.GeomAbs_SurfaceOfRevolution and is_parallel_to_z(surface.AxeOfRevolution()):
         return find_folds_of_turned_surface(surface)
     return find_free_form_folds(surface)
 

@@ -30,7 +30,7 @@ from workhold.geometry.segment import Arc, Point
 from workhold.geometry.subdivision import BorderPiece
 from workhold.model.solid import Band, RunRows, interpolate_run
 
-__all__ = ["Strip", "make_run_rows", "make_strips"]
+__all__ = ["Strip", "make_run_rows", "make_touchable_strips"]
 
 # Ends of runs that differ by less, in mm, go on from piece to piece.
 SAME_BAND = 1e-5
@@ -68,7 +68,7 @@ class Strip:
     covered: tuple[CoveredPiece, ...]
 
 
-def make_strips(loop: Sequence[BorderPiece], walls: WallsByCarrier, least: float) -> list[Strip]:
+def make_touchable_strips(loop: Sequence[BorderPiece], walls: WallsByCarrier, least: float) -> list[Strip]:
     """Return the segments of an outline's loop, each with the heights that may be touched all along it.
 
     Parameters
