@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from workhold.errors import InputError, WorkholdError
     from workhold.family.family import plan_family
     from workhold.files.part.load import load
-    from workhold.files.part.loaded import list_solids_in_file
+    from workhold.files.part.loaded import solids_in
     from workhold.files.result.columns import answer_to_file
     from workhold.files.result.reader import read_result
     from workhold.files.result.save import save
@@ -77,7 +77,7 @@ __all__ = [
     "polygon_zone",
     "save",
     "seatings",
-    "list_solids_in_file",
+    "solids_in",
     "verify",
 ]
 

@@ -163,20 +163,20 @@ def test_after_a_search_only_what_was_interrupted_is_waited_for(interrupted: boo
     program = f"""
 import signal, time
 from workhold.cli import ending
-from workhold.cli.ending import ask_to_stop, end_on_signals, keep_what_is_found
+from workhold.cli.ending import set_event_on_interrupt, end_on_signals, note_results_to_keep
 if {interrupted}:
     # What the watcher does when its patience is over is done below.
     ending.GRACE = 600
 end_on_signals()
-with ask_to_stop("what was found is kept") as event:
+with set_event_on_interrupt("what was found is kept") as event:
     if {interrupted}:
         print("ready", flush=True)
         event.wait(60)
     else:
-        keep_what_is_found()
+        note_results_to_keep()
         assert not event.is_set()
 if {interrupted}:
-    ending.ending.end_impatiently(signal.SIGINT)
+    ending.ending.end_unless_storing(signal.SIGINT)
     print("written", flush=True)
 else:
     ready = False

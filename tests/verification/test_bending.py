@@ -143,7 +143,7 @@ CHANGES: dict[str, Callable[[BendingFigures], BendingFigures]] = {
     "stronger": lambda told: evolve(told, material=evolve(told.material, strength=500.0)),
     "pressed harder": lambda told: evolve(told, jaw_force=3100.0),
     "pressed less": lambda told: evolve(told, jaw_force=2900.0),
-    "a convention": lambda told: evolve(told, is_stated=True),
+    "a convention": lambda told: evolve(told, is_assumed=True),
     "thicker": lambda told: evolve(told, thickness=8.2),
     "another jaw": lambda told: evolve(told, stiffness=0.01),
     "only one face": lambda told: evolve(told, faces=(2,)),

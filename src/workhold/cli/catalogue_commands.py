@@ -388,9 +388,9 @@ def report_layers(asked: FeaturesTask) -> None:
 def report_solids(asked: FeaturesTask) -> None:
     """Print the solids of a STEP file."""
     from workhold.cli.tables import tabulate_solids
-    from workhold.files.part.loaded import list_solids_in_file
+    from workhold.files.part.loaded import solids_in
 
-    solids = list_solids_in_file(asked.part)
+    solids = solids_in(asked.part)
     if asked.words.json_:
         print_json(solids=[asdict(solid) for solid in solids])
         return

@@ -21,7 +21,7 @@ from OCP.TopoDS import TopoDS_Compound
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 from step_shapes import box, write_step
 
-from workhold import InputError, list_solids_in_file, load
+from workhold import InputError, load, solids_in
 from workhold.files.part.survey import survey_part_file
 from workhold.files.step.solids import clean_name, read_name
 
@@ -74,7 +74,7 @@ def bodies(path: Path, *names: str) -> Path:
 
 def test_products_of_an_assembly_are_listed(tmp_path: Path) -> None:
     """Each solid where the assembly places it, by its product; duplicates have one name and their own numbers."""
-    listed = list_solids_in_file(assembly(tmp_path / "machine.step"))
+    listed = solids_in(assembly(tmp_path / "machine.step"))
     assert [solid.name for solid in listed] == ["base plate", *["bolt M8"] * 3]
     assert [solid.number for solid in listed] == [1, 2, 3, 4]
     assert listed[0].size == pytest.approx((60, 40, 10))
@@ -83,7 +83,7 @@ def test_products_of_an_assembly_are_listed(tmp_path: Path) -> None:
 
 def test_bodies_of_one_product_are_listed(tmp_path: Path) -> None:
     """Each by its own name; one that has none, or one that says nothing, has no name."""
-    listed = list_solids_in_file(bodies(tmp_path / "part.step", "base", "Boss-Extrude1", "NONE", ""))
+    listed = solids_in(bodies(tmp_path / "part.step", "base", "Boss-Extrude1", "NONE", ""))
     assert [solid.name for solid in listed] == ["base", "Boss-Extrude1", "", ""]
 
 
@@ -127,7 +127,7 @@ def test_names_that_choose_nothing_are_refused(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=re.escape(f"part.step: {words}")):
             load(path, part_number=name)
     nameless = bodies(tmp_path / "none.step", "", "", "", "")
-    assert [solid.name for solid in list_solids_in_file(nameless)] == [""] * 4
+    assert [solid.name for solid in solids_in(nameless)] == [""] * 4
     with pytest.raises(InputError, match=r"have no names: give a number from 1 to 4 instead of 'lug'"):
         load(nameless, part_number="lug")
     with pytest.raises(InputError, match=r"holds only one solid: leave part_number out"):
@@ -135,7 +135,7 @@ def test_names_that_choose_nothing_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"only solids of a STEP file have names"):
         load("widget", part_number="lug")
     with pytest.raises(InputError, match=r"widget\.json: only STEP files have solids"):
-        list_solids_in_file("widget")
+        solids_in("widget")
 
 
 def test_the_solids_are_told_with_what_is_read_and_with_what_is_not(tmp_path: Path) -> None:

@@ -48,7 +48,7 @@ __all__ = [
     "from_drawing",
     "from_heights",
     "refuse_large",
-    "list_solids_in_file",
+    "solids_in",
     "name_part_after_solid",
 ]
 
@@ -242,7 +242,7 @@ def describe_other_parts(parts: Sequence[DrawnPart], chosen: DrawnPart, asked: i
     return [f"The file holds {len(parts)} separate parts: {listing}{more}. {used}"]
 
 
-def list_solids_in_file(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
+def solids_in(path: str | PathLike[str]) -> tuple[FileSolid, ...]:
     """Return the solids of a STEP file by decreasing volume, with their names where the file has them.
 
     ``load`` takes one of them by its number or its name.

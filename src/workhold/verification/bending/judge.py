@@ -192,7 +192,7 @@ class BendingJudge:
                 named = ()
             if named and named != numbers[: len(named)]:
                 yield Finding(True, f"the numbers of its material are not {material.name}")
-        if told.is_stated and (told.jaw_force != find_usual_force() or self.query.jaw_force is not None):
+        if told.is_assumed and (told.jaw_force != find_usual_force() or self.query.jaw_force is not None):
             yield Finding(True, "its jaw force is said to be a convention, and is none")
         solid = self.query.workpiece.solid
         if solid is not None and abs(solid.height - told.thickness) > NOTHING:
