@@ -285,3 +285,15 @@ def test_of_parts_below_the_jaws_the_least_sunk_comes_first():
     result = held(rectangle(80, 40), vise(parallels=[10, 20, 32]), thickness=9.0)
     parallels = [one.hold.parallels for one in result]
     assert parallels == sorted(parallels, reverse=True) and set(parallels) == {10, 20, 32}
+
+
+def test_nobody_turns_a_part_for_a_percent_of_jaw_force():
+    """Of two ways round that need almost the same force, the part as drawn comes first; not if it needs far more."""
+    load = Load(points=(52, 30), force=500, height=24)
+    result = held(rectangle(), vise(parallels=[20], stop="left"), loads=[load])
+    needs = {round(one.pose.theta_deg): one.hold.clamp_needed for one in result}
+    assert needs[180] < needs[0] < 1.05 * needs[180] and result[0].pose.written_deg == 0
+    far = Load(points=(97, 30), force=500, height=24, directions=90)
+    result = held(rectangle(), vise(parallels=[20], stop="left"), loads=[far])
+    needs = {round(one.pose.theta_deg): one.hold.clamp_needed for one in result}
+    assert result[0].pose.written_deg == (0 if needs[0] < 1.05 * needs[180] else 180)

@@ -28,7 +28,7 @@ from workhold.model.quality import Figure, round_number_coarsely
 from workhold.model.query import Query
 from workhold.model.result import Result
 from workhold.model.setup import PartZero
-from workhold.search.jaw_search import is_square, make_fitness_key
+from workhold.search.jaw_search import is_square, make_fitness_key, weigh_force
 
 __all__ = ["PartInVise", "choose_hold_figure", "judge_holds", "make_jaw_members"]
 
@@ -140,7 +140,10 @@ def judge_holds(
     usable = [key for key in keys if unfit or not any(key[:UNUSABLE])]
     good = np.array([unfit or key == min(usable, default=None) for key in keys], np.bool_)
     values = np.array([read_value(hold, figure) for hold in holds], np.float64)
-    ranked = [get_value_for_loss(value, figure) for value in values.tolist()]
+    ranked = [
+        get_value_for_loss(value, figure, theta)
+        for value, theta in zip(values.tolist(), result.table.theta.tolist(), strict=True)
+    ]
     loss = np.full(len(holds), inf)
     loss[good] = compute_losses(np.array(ranked)[good], figure)
     best = float(values[good][np.argmin(loss[good])]) if good.any() else nan
@@ -155,12 +158,16 @@ def judge_holds(
     return PartInVise(name, path, digest, at, result, loss, used, best, reason)
 
 
-def get_value_for_loss(value: float, figure: Figure) -> float:
-    """Return the value of a figure that its loss is computed of; see :data:`COARSE` and :data:`LEAST_FORCE`."""
+def get_value_for_loss(value: float, figure: Figure, theta: float) -> float:
+    """Return the value of a figure that its loss is computed of, for a part at ``theta`` in radians.
+
+    See :data:`COARSE` and :data:`LEAST_FORCE`; a jaw force counts more where the part is turned, as in the list.
+    """
     if figure.key not in COARSE:
         return value
-    coarse = round_number_coarsely(value)
-    return max(coarse, LEAST_FORCE) if figure.key == "clamp_needed" else coarse
+    if figure.key == "clamp_needed":
+        return max(round_number_coarsely(weigh_force(value, theta)), LEAST_FORCE)
+    return round_number_coarsely(value)
 
 
 def read_value(hold: JawHold, figure: Figure) -> float:

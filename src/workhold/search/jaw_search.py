@@ -30,6 +30,7 @@ from workhold.fixels.jaw_pair import JawPair
 from workhold.geometry.hull import HullEdge, HullTouch, find_hull_edges, find_touches_along
 from workhold.geometry.segment import Arc, Segment
 from workhold.geometry.symmetry import find_rotations_onto_itself
+from workhold.model.first_choice import FACTORS
 from workhold.model.fixture_table import FixtureTable, make_flat_jaw_table
 from workhold.model.friction import find_friction_coefficient
 from workhold.model.jaw_hold import JawHold, JawPatch, ProgramJawForce, find_largest_force
@@ -69,6 +70,7 @@ __all__ = [
     "find_fixtures_between_jaws",
     "is_square",
     "make_fitness_key",
+    "weigh_force",
 ]
 
 Array = NDArray[np.float64]
@@ -646,6 +648,16 @@ def is_square(theta: float) -> bool:
     return abs((degrees(theta) + 45.0) % 90.0 - 45.0) < SQUARE_TILT
 
 
+def weigh_force(force: float, theta: float) -> float:
+    """Return a jaw force in N as the order counts it: more by a twentieth where the part is turned, at ``theta`` in
+    radians.
+
+    For so little nobody turns the program as well (see ``model.first_choice``).
+    """
+    is_turned = abs((degrees(theta) + 180.0) % 360.0 - 180.0) >= SQUARE_TILT
+    return force * FACTORS[0].times if is_turned else force
+
+
 def make_fitness_key(hold: JawHold, query: Query) -> list[float]:
     """Return the part of the sort key of a hold that says how fit it is; fitter holds have smaller keys.
 
@@ -685,7 +697,7 @@ def make_order_key(one: ExaminedHold, query: Query) -> tuple[float, ...]:
                     if not query.is_loaded
                     else inf
                     if hold.clamp_needed is None
-                    else round_number_coarsely(hold.clamp_needed)
+                    else round_number_coarsely(weigh_force(hold.clamp_needed, one.theta))
                 )
             case "contact_area":
                 key.append(-round_number_coarsely(hold.contact_area))
