@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, inf, isfinite, pi, sin
+from math import asin, cos, hypot, inf, isfinite, pi, sin
 from random import Random
 
 import numpy as np
@@ -40,6 +40,7 @@ from workhold.kernels.chord.evaluation import (
     bound_regular_error,
     compute_chord_state,
     evaluate_curve,
+    evaluate_state,
 )
 from workhold.kernels.curves.piece_bounds import bound_tail_error, compute_tail, enclose_tail, enclose_value
 
@@ -145,6 +146,22 @@ def test_computed_contacts_are_off_their_features_by_no_more_than_the_blur(seed,
                     shift,
                     branch,
                 )
+
+
+@pytest.mark.parametrize("tail_on_line", [True, False])
+@pytest.mark.parametrize("away", [1e-3, 1e-5])
+def test_along_a_level_face_the_height_is_known_beside_a_tangency(tail_on_line, away):
+    """The chord slides along the face, by an error that grows without bound, and the height does not change."""
+    wall, circle, d = line_row(0, 0, 0, 60), arc_row(0, 0, 20), 25.0
+    # The head is nearly at the top of the circle, where this runs along the face.
+    a, b, alpha = (wall, circle, asin(0.8) - away) if tail_on_line else (circle, wall, asin(0.8) - away - pi)
+    curve = curve_row(a, b, d, 1.0)
+    state = compute_chord_state(a, b, curve, alpha, cos(alpha), sin(alpha))
+    level, turned = (
+        evaluate_state(a, b, state, cosine, sine, HEIGHT).error for cosine, sine in ((1.0, 0.0), (0.0, 1.0))
+    )
+    assert level <= 4.1 * curve[BACKWARD_ERROR] < 0.1 * state.error
+    assert turned == state.error
 
 
 @given(seeds, kinds)

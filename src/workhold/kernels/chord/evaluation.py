@@ -34,7 +34,7 @@ Reference: J. M. Ortega, "The Newton-Kantorovich theorem", American Mathematical
 
 from __future__ import annotations
 
-from math import cos, hypot, inf, pi, sin, sqrt
+from math import cos, hypot, inf, isfinite, pi, sin, sqrt
 from typing import NamedTuple
 
 from workhold.conventions import EXACT
@@ -89,6 +89,7 @@ class ChordState(NamedTuple):
     center_x, center_y : the instant centre P in mm.
     error : bound in mm of the error of the tail; inf where nothing is known, too near a tangency.
     center_error : bound in mm of the error of P, over the chord's own directions; inf likewise.
+    off : bound in mm of how far the computed contacts are off their features.
     """
 
     x: float
@@ -101,6 +102,7 @@ class ChordState(NamedTuple):
     center_y: float
     error: float
     center_error: float
+    off: float
 
 
 class CurvePoint(NamedTuple):
@@ -370,9 +372,8 @@ def compute_chord_state(
             rbx, rby = compute_contact_direction(b, u.x + wx, u.y + wy)
             error = bound_regular_error(curve) + bound_misfit(a, b, curve, rax * rby - ray * rbx)
             slope_error = error * (1.0 + d * kappa)
-            return ChordState(
-                u.x, u.y, rax, ray, rbx, rby, u.x - u.speed_y, u.y + u.speed_x, error, slope_error
-            )
+            px, py = u.x - u.speed_y, u.y + u.speed_x
+            return ChordState(u.x, u.y, rax, ray, rbx, rby, px, py, error, slope_error, error)
     c = compute_chord_along(a, b, wx, wy, curve[BRANCH], kind == ARCS)
     turn = c.ax * c.by - c.ay * c.bx
     if kind == CONCENTRIC:
@@ -387,7 +388,8 @@ def compute_chord_state(
         inverse = 1.0 / abs(turn)
         error = 6.0 * eta * inverse
         slope_error = 8.0 * eta * inverse * inverse * (1.0 + kappa * (d + 2.0 * abs(p)))
-    return ChordState(c.x, c.y, c.ax, c.ay, c.bx, c.by, c.x + p * c.ax, c.y + p * c.ay, error, slope_error)
+    px, py = c.x + p * c.ax, c.y + p * c.ay
+    return ChordState(c.x, c.y, c.ax, c.ay, c.bx, c.by, px, py, error, slope_error, eta)
 
 
 @inner
@@ -401,14 +403,17 @@ def evaluate_state(
     """
     ux, uy, px, py = state.x, state.y, state.center_x, state.center_y
     if mode == HEIGHT:
-        doubt = state.center_error
-        if a[IS_ARC] + b[IS_ARC] == 1.0:
+        error, doubt = state.error, state.center_error
+        if a[IS_ARC] + b[IS_ARC] == 1.0 and isfinite(error):
             # P lies on the line of action through the straight feature, which turns with nothing: of its
-            # error along that line only the part along x counts.
+            # error along that line only the part along x counts. The chord moves along the straight feature,
+            # computed and exact alike but for what the contact is off it: of its error only the part along y
+            # counts, which is as large.
             nx, ny = (state.ax, state.ay) if a[IS_ARC] == 0.0 else (state.bx, state.by)
             share = abs(cosine * nx + sine * ny)
-            doubt = min(doubt, state.error + share * (doubt + state.error))
-        return CurvePoint(cosine * uy - sine * ux, -(cosine * px + sine * py), state.error, doubt)
+            doubt = min(doubt, error + share * (doubt + error))
+            error = min(error, share * error + 4.0 * state.off)
+        return CurvePoint(cosine * uy - sine * ux, -(cosine * px + sine * py), error, doubt)
     s = find_parameter(a, ux, uy)
     p = (px - ux) * state.ax + (py - uy) * state.ay
     if a[IS_ARC] == 0.0:

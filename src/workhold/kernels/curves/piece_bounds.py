@@ -182,7 +182,7 @@ def bound_disc_radius(a: Array, b: Array, curve: Array, state: ChordState, psi: 
         return 2.0 * e + eta + 1.01 * bound_root_error(half * half, e * (2.0 * a[RADIUS] + e))
     if is_shallow(a) and a[RADIUS] > b[RADIUS]:
         # Seen from the smaller circle, the contact on the larger one is known better.
-        seen = ChordState(0.0, 0.0, state.bx, state.by, state.ax, state.ay, 0.0, 0.0, 0.0, 0.0)
+        seen = ChordState(0.0, 0.0, state.bx, state.by, state.ax, state.ay, 0.0, 0.0, 0.0, 0.0, 0.0)
         return e + bound_arc_tail_error(b, a, seen, e, eta)
     return bound_arc_tail_error(a, b, state, e, eta)
 
