@@ -346,10 +346,11 @@ def list_type_one_systems(pairs: PegPairs, rows: Array, frame: SearchFrame) -> I
 def pair_with_rows(
     pairs: PegPairs, one: int, two: IntArray, shared: BoolArray, frame: SearchFrame
 ) -> Iterator[EquationSystems]:
-    """Yield the systems of the left pair ``one`` with the right pairs ``two``, row by row of the right jaw.
+    """Yield the systems made of the left pair ``one`` and the right pairs ``two``, row by row of the right
+    jaw.
 
-    For each row, the right pairs are those that may have their first peg in it, as bounds of the pegs'
-    heights allow. ``shared`` (len(two), SECTORS) are the orientations that both pairs allow.
+    A right pair occurs in the rows in which its first peg may be, by the bounds of the pegs' heights.
+    ``shared`` (len(two), SECTORS) are the orientations that both pairs allow.
     """
     pitch, offset = frame.lattice.pitch_y, frame.lattice.row_offset
     low = np.where(shared, (pairs.low[two, :, 1] - pairs.high[one, :, 1] - offset) / pitch, np.inf)

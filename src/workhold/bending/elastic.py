@@ -255,7 +255,7 @@ class ElasticBody:
             + volume * solving.Trace(strain) * solving.Trace(tested)
         ) * solving.dx
         matrix = form.Assemble().mat
-        for number, axis in self.choose_held():
+        for number, axis in self.choose_fixed_coordinates():
             block = matrix[number, number]
             entries = block.NumPy()
             entries[axis, axis] *= 2.0
@@ -263,7 +263,7 @@ class ElasticBody:
         solver = matrix.Inverse(self.space.FreeDofs(), inverse="sparsecholesky")
         return solver, matrix.CreateColVector(), matrix.CreateColVector()
 
-    def choose_held(self) -> list[tuple[int, int]]:
+    def choose_fixed_coordinates(self) -> list[tuple[int, int]]:
         """Return six pairs (number of a corner, axis). Springs at them leave no rigid motion free.
 
         They are at three corners of the mesh that are far from each other.

@@ -41,10 +41,10 @@ CLOSEST_HOLES = 5.0
 
 
 def limit_holes_drawn(view: View, shown: ShownSetUp) -> float:
-    """Return the largest number of holes of a carrier that are all drawn; of more holes, only those near the
-    pegs are drawn.
+    """Return the number of holes up to which all holes of a carrier are drawn.
 
-    It is inf, or 0 where the holes would be too close on the page.
+    Of more holes, only those near the pegs are drawn. The number is inf if there is no limit, and 0 if the
+    holes would be too close on the page.
     """
     return 0 if shown.pitch * view.scale < CLOSEST_HOLES else inf
 

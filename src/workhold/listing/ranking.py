@@ -356,9 +356,10 @@ class OrderKeys:
 
 
 def has_a_step_more(error: IntArray, than: IntArray | np.int64) -> BoolArray:
-    """Return a mask: True where ``error`` surely has at least one step (a tenth) more than ``than``.
+    """Return a mask: True where ``error`` surely counts at least one step (a tenth) more than ``than``.
 
-    This holds for every error from which steps are counted. Both are in billionths of a mm.
+    Steps are counted from the least error of all fixtures. The answer is certain even if that error is
+    unknown. Both are in billionths of a mm.
     """
     eleven, ten = STEP_TENTHS
     return np.asarray((ten * error >= eleven * than) & (than > 0))

@@ -85,7 +85,7 @@ def find_account_faults(listing: WrittenListing, rotations: int) -> Iterator[str
     ``rotations`` is the largest possible number of rotations that carry the part onto itself, with the
     identity.
     """
-    yield from count_faults(listing, rotations)
+    yield from find_contradictions_of_counts(listing, rotations)
     yield from find_seating_count_faults(listing)
     if listing.query.toolkit.travel_count > 1:
         yield from find_pair_count_faults(listing)
@@ -97,7 +97,7 @@ def find_account_faults(listing: WrittenListing, rotations: int) -> Iterator[str
     yield from find_note_faults(listing)
 
 
-def count_faults(listing: WrittenListing, rotations: int) -> Iterator[str]:
+def find_contradictions_of_counts(listing: WrittenListing, rotations: int) -> Iterator[str]:
     """Yield one sentence for each contradiction among the listed fixtures, ``counts``, ``found`` and
     ``distinct``.
 

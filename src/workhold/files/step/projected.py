@@ -304,9 +304,9 @@ def cut_edges(shape: Any, z: float) -> list[Found]:
 
 
 def find_folds(face: SolidFace) -> list[Found]:
-    """Return the curves along which a curved face stands upright (its normal is level), seen from above.
+    """Return the curves on a curved face along which its normal is level, seen from above.
 
-    They may go on beyond the face, which does no harm.
+    The curves may extend beyond the face.
     """
     surface = find_surface(face.shape)
     kind = surface.GetType()

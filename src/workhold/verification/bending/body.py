@@ -383,13 +383,16 @@ class Body:
         matrix = form.Assemble().mat
         free = solving.BitArray(self.space.ndof)
         free.Set()
-        for vertex, axis in self.choose_held():
+        for vertex, axis in self.choose_fixed_coordinates():
             free[int(self.scalar.ndof) * axis + vertex] = False
         return matrix.Inverse(free, inverse="sparsecholesky")
 
-    def choose_held(self) -> list[tuple[int, int]]:
-        """Return six pairs (corner, axis): all of one corner, the two across of a second, and one of a third that is
-        across the line of both.
+    def choose_fixed_coordinates(self) -> list[tuple[int, int]]:
+        """Return six pairs (corner, axis), at which springs leave no rigid motion free.
+
+        The first corner has all three axes. The second has the two axes most nearly perpendicular to the line
+        between both. The third, the corner farthest from that line, has the axis along which a turn about the
+        line moves it most.
         """
         numbers = np.unique(self.mesh.faces)
         points = np.array([v.point for v in self.mesh.made.vertices])[numbers]
