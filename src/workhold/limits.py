@@ -42,7 +42,7 @@ __all__ = [
     "refuse_long_search",
     "refuse_strong",
     "choose_thread_count",
-    "name_number_fields",
+    "name_fields_in_errors",
 ]
 
 
@@ -85,7 +85,7 @@ def convert_real(value: Any, name: str = "a number") -> float:
     return number
 
 
-def name_number_fields(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
+def name_fields_in_errors(cls: type, fields: list[Attribute[Any]]) -> list[Attribute[Any]]:
     """Return the fields of an attrs class, changed so that errors of :func:`convert_real` name the field.
 
     For the argument ``field_transformer`` of ``attrs.define``. Fields with another converter stay as they

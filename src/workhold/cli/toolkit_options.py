@@ -358,7 +358,7 @@ def list_toolkits_to_try(
     if kind is not None:
         refuse_missing_fields(find_table(kind), given)
     if names is None and varied.has_pitches:
-        refuse_too_few(find_table(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
+        refuse_missing_fields(find_table(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
         refuse_missing_fields(find_table(kind or USUAL), given)
         bases = [NamedToolkit("", kind or USUAL, dict(said))]
     else:
@@ -425,7 +425,7 @@ def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str
         )
 
 
-def refuse_too_few(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:
+def refuse_missing_fields(table: FieldTable, known: set[str], given: list[tuple[ToolkitField, str]]) -> None:
     """Raise InputError where a required field of a toolkit is not among the known ones."""
     missing = [row.option for row in table.fields if row.is_required and row.name not in known]
     if missing:

@@ -18,7 +18,7 @@ from workhold.errors import InputError, quote_value
 from workhold.geometry.hull import HullEdge, HullEnd
 from workhold.geometry.segment import Arc, Line, Segment
 from workhold.geometry.symmetry import rotate_vectors
-from workhold.limits import convert_real, make_real_array, name_number_fields
+from workhold.limits import convert_real, make_real_array, name_fields_in_errors
 
 __all__ = ["ENDS", "FlushContacts", "Pose"]
 
@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 ENDS = ("left", "right")
 
 
-@frozen(field_transformer=name_number_fields)
+@frozen(field_transformer=name_fields_in_errors)
 class Pose:
     """Position of a part in the toolkit: a point q of the part is at R(theta) q + (x, y).
 

@@ -21,7 +21,7 @@ from attrs import evolve, field, frozen
 from numpy.typing import NDArray
 
 from workhold.errors import InputError
-from workhold.limits import convert_real, name_number_fields, refuse_long
+from workhold.limits import convert_real, name_fields_in_errors, refuse_long
 from workhold.model.cutting_forces import CuttingForces
 from workhold.model.cutting_tool import CuttingData, Cylinder, Tool
 from workhold.model.moves import (
@@ -87,7 +87,7 @@ class SweptArrays(NamedTuple):
     box: NDArray[np.bool_]
 
 
-@frozen(repr=False, field_transformer=name_number_fields)
+@frozen(repr=False, field_transformer=name_fields_in_errors)
 class Program:
     """A program as it was read, in the part's coordinates and mm; z is 0 in the plane on which the part lies.
 

@@ -28,7 +28,7 @@ from workhold.geometry.loop import (
     reverse_vertices,
 )
 from workhold.geometry.segment import Box, Segment
-from workhold.limits import convert_real, name_number_fields, refuse_long, refuse_strong
+from workhold.limits import convert_real, name_fields_in_errors, refuse_long, refuse_strong
 from workhold.model.dowels import DowelFit
 
 __all__ = [
@@ -103,7 +103,7 @@ def to_direction_range(directions: Any) -> tuple[float, float]:
     return start, start + (high - low) % 360.0
 
 
-@frozen(field_transformer=name_number_fields)
+@frozen(field_transformer=name_fields_in_errors)
 class Load:
     """A force and a moment that act ON the workpiece; pegs must push back.
 
@@ -391,7 +391,7 @@ class Restrictions(RestrictionQuestion):
         return bool(self.avoid or self.zones or self.angles or self.touch)
 
 
-@frozen(field_transformer=name_number_fields)
+@frozen(field_transformer=name_fields_in_errors)
 class Tolerance:
     """Largest errors along the normal of a contact, either way.
 

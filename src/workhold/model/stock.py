@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 
 from workhold.asking.program import StockQuestion
 from workhold.errors import InputError
-from workhold.limits import convert_real, name_number_fields, refuse_long
+from workhold.limits import convert_real, name_fields_in_errors, refuse_long
 from workhold.model.cutting_tool import Tool
 from workhold.model.moves import Moves, MoveStretches, compute_path_points, find_shares_between_heights
 
@@ -52,7 +52,7 @@ SAME_SHARE = 1e-11
 AT_ONCE = 1 << 19
 
 
-@frozen(field_transformer=name_number_fields)
+@frozen(field_transformer=name_fields_in_errors)
 class Stock(StockQuestion):
     """The raw stock that the part is cut from.
 

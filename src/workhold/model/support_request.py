@@ -25,7 +25,7 @@ from workhold.fixels.toolkit import Toolkit
 from workhold.geometry.loop import check_vertices, make_loop_segments
 from workhold.geometry.segment import make_segment_rows
 from workhold.kernels.base.distance import is_inside
-from workhold.limits import convert_real, name_number_fields, refuse_long, refuse_strong
+from workhold.limits import convert_real, name_fields_in_errors, refuse_long, refuse_strong
 from workhold.model.fixture import Fixture, Peg
 from workhold.model.numbered_outlines import NumberedOutlines
 from workhold.model.requirements import (
@@ -104,7 +104,7 @@ def to_rings(reach: Iterable[Iterable[float]]) -> tuple[tuple[float, float, floa
     return tuple((x, y, least, most) for x, y, least, most in rings)
 
 
-@frozen(field_transformer=name_number_fields)
+@frozen(field_transformer=name_fields_in_errors)
 class SpatialLoad:
     """A load in space. Force, axial force and moments act together; each varies in its own range.
 
@@ -185,7 +185,7 @@ class SpatialLoad:
         return self if self.heights is not None else evolve(self, heights=(thickness, thickness))
 
 
-@frozen(field_transformer=name_number_fields)
+@frozen(field_transformer=name_fields_in_errors)
 class SupportRequest:
     """Sizes of supports and clamp, and their allowed places; lengths in mm, in the part's coordinates.
 

@@ -202,8 +202,10 @@ class PathForces:
         return np.asarray(out + torque * np.abs(c))
 
     def evaluate_within_arcs(self, x: Array, y: Array, size: Array, c: Array, piece: IntArray) -> Array:
-        """Return the largest inner extreme of V on each of Q arcs for F =
-        1 and T = 0, (Q,); -inf where there is none.
+        """Return the largest value of V at the inner extremes of each of Q arcs, (Q,); -inf if an arc has
+        none.
+
+        V is the value of the module, here per unit of the tool's force (F = 1) and without a torque (T = 0).
 
         Parameters
         ----------

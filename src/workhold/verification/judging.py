@@ -230,7 +230,7 @@ class OrderJudge:
         if least is None:
             return "the least effective error, from which steps of the order count, is missing"
         off = self.query.tolerance.peg + self.query.tolerance.face
-        ranked = [(rank_unfit(fixture, off), fixture) for fixture in fixtures]
+        ranked = [(enclose_unfit_flag(fixture, off), fixture) for fixture in fixtures]
         classes = [
             (bad[0] + (bad[0] != bad[1]) / 2, fixture.quality.get("warnings", 0.0) > HAIR)
             for bad, fixture in ranked
@@ -292,7 +292,7 @@ def find_order_faults(
         """
         first = judge.rank_first_keys(fixture, figures) if judge is not None and asked.has_house_order else []
         return [
-            rank_unfit(fixture, off),
+            enclose_unfit_flag(fixture, off),
             *first,
             *list_ranked_ranges(figures, list_ranking_figures(asked.rank_by)),
         ]
@@ -431,7 +431,7 @@ def make_peg_key(peg: Peg) -> tuple[int, int, int]:
     return peg.column, peg.row, peg.face
 
 
-def rank_unfit(fixture: Fixture, off: float) -> Range:
+def enclose_unfit_flag(fixture: Fixture, off: float) -> Range:
     """Return (least, greatest) of a number that is 1.0 for a fixture unfit for a workshop and 0.0 for a fit
     one.
 
