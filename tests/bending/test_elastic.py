@@ -23,11 +23,11 @@ from bent_bodies import (
     ring,
     shared,
 )
-from workhold import InputError, Workpiece
+from workhold import InputError, Load, Plate, Workpiece, design
 from workhold.bending import meshing
 from workhold.bending.elastic import ElasticBody, PointForces, make_rigid_motions
 from workhold.bending.laying import Constraints, find_rigid_motion
-from workhold.bending.meshing import make_mesh
+from workhold.bending.meshing import OF_SHEET, PER_SQUARE, choose_size, make_mesh
 from workhold.bending.patches import find_foot_corners, make_foot
 from workhold.bending.shape import PrismShape
 from workhold.bending.surface import LATTICE
@@ -391,3 +391,42 @@ def test_a_part_that_nothing_fills_is_refused_in_a_sentence(monkeypatch: pytest.
     monkeypatch.setattr(meshing, "MORE", (FAILING,))
     with pytest.raises(InputError, match="cannot be meshed"):
         make_mesh(block_with_bores())
+
+
+def test_a_wide_sheet_takes_larger_elements_and_a_wider_one_is_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert choose_size(60 * 40 * 30, 30) == pytest.approx((60 * 40 * 30 / 170) ** (1 / 3))
+    for thick, wide in ((6.0, 600.0), (3.0, 600.0), (3.0, 1000.0)):
+        size = choose_size(0.7 * wide * wide * thick, thick)
+        assert size <= OF_SHEET * thick and PER_SQUARE * 0.7 * wide**2 / size**2 <= meshing.MOST_TETRAHEDRA
+    with pytest.raises(
+        InputError, match=r"the part is a sheet that needs about 203,125 elements.*smaller piece of it"
+    ):
+        choose_size(2e6 * 1.0, 1.0)
+    # Long before anything is meshed.
+    with pytest.raises(InputError, match="the part is a sheet"):
+        make_mesh(PrismShape(block(80.0, 60.0), 1e-3))
+    monkeypatch.setattr(meshing, "MOST_TETRAHEDRA", 3000)
+    sheet = PrismShape(block(200.0, 130.0), 3.0)
+    coarse = make_mesh(sheet)
+    monkeypatch.setattr(meshing, "MOST_TETRAHEDRA", 12000)
+    fine = make_mesh(sheet)
+    assert coarse.made.ne < 1500 < fine.made.ne
+
+
+@pytest.mark.thorough
+def test_a_coarse_sheet_bends_as_a_fine_one_within_its_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    plate = Plate(pitch=25, peg_radius=4, columns=12, rows=8)
+    result = design(block(200.0, 130.0), plate, best=2, loads=[Load(points=[(80, 70)], force=80)])
+    monkeypatch.setattr(meshing, "TETRAHEDRA", 150)
+    fine = result.bend(thickness=3.0, jaw_force=300.0)
+    monkeypatch.setattr(meshing, "MOST_TETRAHEDRA", 1500)
+    for one, other in zip(result.bend(thickness=3.0, jaw_force=300.0), fine, strict=True):
+        assert one.bent is not None and other.bent is not None and one.bent.give is not None
+        assert one.bent.elements < 1500 < other.bent.elements and other.bent.give is not None
+        for coarse, exact in (
+            (one.bent.clamp_distortion, other.bent.clamp_distortion),
+            (one.bent.give, other.bent.give),
+        ):
+            assert abs(coarse.value - exact.value) <= coarse.error + exact.error

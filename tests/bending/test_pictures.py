@@ -6,6 +6,7 @@ from math import inf
 
 import numpy as np
 import pytest
+from attrs import evolve
 
 from bent_bodies import METAL, block, bodies, need_elements
 from workhold.bending.figures import Bending
@@ -79,3 +80,16 @@ def test_what_stands_before_a_place_hides_it() -> None:
     below, top = (int(np.linalg.norm(nodes - (30.0, 20.0, z), axis=1).argmin()) for z in (0.0, HIGH))
     view = BentView.from_bending(bending, 1.0, 30.0, 35.0)
     assert view.shows(top, triangles) and not view.shows(below, triangles)
+
+
+def test_a_part_that_might_yield_has_a_square_at_its_stress() -> None:
+    calm = bent_at((30.0, 20.0, HIGH))
+    weak = evolve(calm, material=evolve(METAL, strength=1.05))
+    assert calm.yields is None and weak.yields
+    assert "Square" not in draw(calm)
+    text = draw(weak)
+    assert "Square: most stressed, might yield." in text and "Ring: most." in text
+    below = draw(evolve(weak, stress=LargestStress(1.0, 0.1, (30.0, 20.0, 0.0))))
+    assert "Dashed square: most stressed, hidden." in below and "Seen from below" not in below
+    both = draw(evolve(weak, stress=LargestStress(1.0, 0.1, (0.0, 20.0, 4.0))))
+    assert "Square: most stressed, might yield." in both

@@ -62,7 +62,7 @@ def plain() -> Result:
 def partly(plain: Result) -> Result:
     """The second and the fourth fixture are bent."""
     faces: tuple[int | str, ...] = ("top", 2)
-    other = make_figures(0.01, stiffness=0.5, faces=faces, is_assumed=True)
+    other = make_figures(0.01, stiffness=0.5, faces=faces, is_assumed=True, jaw_force=1000.0)
     return plain.add_bending({1: make_figures(0.02), 3: other})
 
 

@@ -347,3 +347,42 @@ def test_the_height_of_a_strap_on_a_solid_is_that_of_its_face(tmp_path: Path) ->
     assert isinstance(hold, StrappedHold) and hold.straps[0].height == pytest.approx(HIGH + 20.0)
     _, held = hold_part(result, hold, HIGH)
     assert held.hold.columns[0].points[:, 2] == pytest.approx(HIGH)
+
+
+def test_straps_in_place_of_side_clamps_bend_like_a_fixtures_own() -> None:
+    own = strapped("plate")
+    radius = own.toolkit.strap_set.tip_radius  # type: ignore[union-attr]
+    hold = own[0].hold
+    assert isinstance(hold, StrappedHold)
+    told = own[0].bending(thickness=HIGH, jaw_force=FORCE)
+    same = own[0].bending(thickness=HIGH, jaw_force=FORCE, straps=evolve(hold, tip_radius=radius))
+    assert same.clamp_distortion == told.clamp_distortion and same.stress == told.stress
+    with pytest.raises(InputError, match="have no room in a result file"):
+        same.to_figures()
+
+
+@pytest.mark.parametrize("over", ["plate", "supports"])
+def test_a_fixture_with_clamps_is_bent_under_straps_alone(over: str) -> None:
+    block = workhold.Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
+    load = Load(points=[(50, 30)], force=300)
+    plate = workhold.Plate(pitch=20, peg_radius=3, columns=8, rows=6)
+    first = workhold.design(block, plate, best=1, loads=[load], jaw_force=90.0)[0]
+    held = first.straps(5, count=2 if over == "plate" else 3, over=over)
+    told = first.bending(thickness=5, straps=held)
+    assert told.jaw_force == pytest.approx(held.clamp_needed) and not told.is_stated
+    twice = first.bending(thickness=5, straps=held, jaw_force=2 * told.jaw_force)
+    assert twice.clamp_distortion.value == pytest.approx(2 * told.clamp_distortion.value, rel=1e-6)
+    # No side clamp presses: far from the straps nothing is stressed.
+    sides = first.bending(thickness=5)
+    assert sides.clamp_distortion.at != told.clamp_distortion.at and sides.jaw_force == 90.0
+    with pytest.raises(InputError, match="leave one of straps and supports out"):
+        first.bending(thickness=5, straps=held, supports=first.supports(5))
+
+
+def test_only_locators_lay_a_part_under_straps() -> None:
+    block = workhold.Workpiece.from_points("block", [(0, 0), (100, 0), (100, 60), (0, 60)])
+    plate = workhold.Plate(pitch=20, peg_radius=3, columns=8, rows=6, clamps=2)
+    result = workhold.design(block, plate, best=1)
+    held = result[0].straps(5, count=2, loads=[Load(points=[(50, 30)], force=300)])
+    _, one = hold_part(result, held, 5.0)
+    assert len(one.hold.locating[0]) == len(one.reads[0]) == 3

@@ -55,6 +55,8 @@ def test_numbers_that_define_the_figures_are_the_same_in_both_copies() -> None:
     assert (pressed.ACROSS, pressed.APART) == (patches.ACROSS, patches.ALONG)
     assert (pressed.DISC, pressed.AROUND) == (patches.RINGS, patches.AROUND)
     assert (body.SHARE, body.OF_EXTENT) == (meshing.SHARE, meshing.OF_LEAST_EXTENT)
+    assert (body.MOST, body.ROOM) == (meshing.MOST_TETRAHEDRA, meshing.ROOM)
+    assert (body.OF_SHEET, body.PER_SQUARE) == (meshing.OF_SHEET, meshing.PER_SQUARE)
     tried = (meshing.FEW, *meshing.MORE)
     assert tuple((one["grading"], one["curvaturesafety"]) for one in tried) == body.GRADED
     assert (judge.LOAD_RADIUS, judge.OF_STRESS) == (asking.CUTTER_RADIUS, asking.OF_STRESS)

@@ -78,6 +78,7 @@ class BendingQuestion:
     stiffness : ratio of the stiffness of the closed jaw to that of one contact.
     below : by index of a fixture, the pads under its part and the clamp on top; the parts of other fixtures
         lie on their level faces.
+    straps : by index of a fixture, straps that hold its part in place of its side clamps.
     """
 
     material: ElasticMaterial
@@ -86,6 +87,7 @@ class BendingQuestion:
     faces: tuple[int | str, ...] = ()
     stiffness: float = np.inf
     below: dict[int, PadsBelow] = field(factory=dict)
+    straps: dict[int, StrappedHold] = field(factory=dict)
 
     def find_part_height(self, query: Query) -> float:
         """Return the height of the part in mm.
@@ -108,10 +110,14 @@ class BendingQuestion:
         the query gives a force and the loads need none.
         """
         given = query.jaw_force if self.jaw_force is None else self.jaw_force
+        needed = fixture.quality.get("jaw_force_needed", fixture.quality.get("clamp_needed", 0.0))
+        is_loaded = query.is_loaded
+        if isinstance(fixture.hold, StrappedHold) and fixture.hold.tip_radius is not None:
+            # Forces of the query are those of the side clamps.
+            given, needed, is_loaded = self.jaw_force, fixture.hold.clamp_needed or 0.0, True
         if given is not None:
             return given, False
-        needed = fixture.quality.get("jaw_force_needed", fixture.quality.get("clamp_needed", 0.0))
-        if query.is_loaded and np.isfinite(needed) and needed > 0.0:
+        if is_loaded and np.isfinite(needed) and needed > 0.0:
             return float(needed), False
         return STATED_FORCE, True
 
@@ -178,6 +184,7 @@ class HeldFixture:
     reads : for each level of the hold's locators, the numbers of its readings in :class:`UnitLoads`.
     force, is_assumed : jaw force in N, and whether it is assumed because none was given.
     below : the pads under the part and the clamp on top; None without.
+    has_own_straps : whether straps hold the part that are not the fixture's own.
     rest : where the part touches the plate that straps press it on; None without straps on a plate.
     """
 
@@ -187,6 +194,7 @@ class HeldFixture:
     force: float
     is_assumed: bool
     below: PadsBelow | None = None
+    has_own_straps: bool = False
     rest: PlateRest | None = None
 
     def estimate_error(self, value: float, change: float) -> float:
@@ -270,11 +278,13 @@ def find_bendings(
         )
     tell(MESHED, 0)
     units = UnitLoads(surface)
-    is_strapped = any(isinstance(result[row].hold, StrappedHold) for row in rows)
+    chosen = [
+        evolve(result[row], hold=asked.straps[row]) if row in asked.straps else result[row] for row in rows
+    ]
+    is_strapped = any(isinstance(fixture.hold, StrappedHold) for fixture in chosen)
     faces = RestingFaces.from_corners(corners) if is_strapped else None
     held: list[HeldFixture] = []
-    for row in rows:
-        fixture = result[row]
+    for row, fixture in zip(rows, chosen, strict=True):
         force, is_assumed = asked.find_jaw_force(fixture, query)
         hold = make_elastic_hold(
             fixture,
@@ -289,9 +299,8 @@ def find_bendings(
             faces=faces,
         )
         reads = [units.add(level) for level in hold.locating]
-        held.append(
-            HeldFixture(hold, units.add(hold.columns), reads, force, is_assumed, asked.below.get(row))
-        )
+        numbers, below = units.add(hold.columns), asked.below.get(row)
+        held.append(HeldFixture(hold, numbers, reads, force, is_assumed, below, row in asked.straps))
     loads = list_cutter_loads(query, height)
     places = [] if loads is None else find_pressed_places(loads, units)
     second, third = (SolvedLoads(ElasticBody(mesh, asked.material, order), units) for order in (2, 3))
@@ -379,6 +388,7 @@ def make_bending(
         surface=surface,
         moved=moved,
         pressed=pressed,
+        has_own_straps=one.has_own_straps,
     )
 
 

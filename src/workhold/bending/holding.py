@@ -307,13 +307,17 @@ def make_strapped_hold(
     InputError
         For a fixture without straps.
     """
-    if not hold.straps or toolkit.strap_set is None:
+    radius = toolkit.strap_set.tip_radius if toolkit.strap_set is not None else hold.tip_radius
+    if not hold.straps or radius is None:
         raise InputError("a fixture has no straps, so that nothing bends its part: bend one that has some.")
     back, size = fixture.pose.inverse, max(np.ptp(foot.points, axis=0).max(), height)
-    raised = (toolkit.supports.height or 0.0) if toolkit.supports is not None and hold.supports else 0.0
+    raised = 0.0
+    if hold.supports:
+        known = None if toolkit.supports is None else toolkit.supports.height
+        raised = (known if hold.support_height is None else hold.support_height) or 0.0
     tops = [height if workpiece.solid is None else one.height - raised for one in hold.straps]
     tips = [
-        make_disc(np.array([*back.apply(*one.at), top]), toolkit.strap_set.tip_radius, UP)
+        make_disc(np.array([*back.apply(*one.at), top]), radius, UP)
         for one, top in zip(hold.straps, tops, strict=True)
     ]
     count = len(tips)
@@ -322,7 +326,13 @@ def make_strapped_hold(
     points, normals = find_touched_points(fixture, workpiece, toolkit)
     strips = make_contact_strips(fixture, workpiece, points, normals, height, pressed_top)
     outward = np.column_stack([normals, np.zeros(len(normals))])
-    reads = tuple(strip.read(normal) for strip, normal in zip(strips, outward, strict=True))
+    # Side clamps, if the fixture has some, are left out.
+    stands = [toolkit.find_carrier(peg.carrier).travel is None for peg in fixture.pegs]
+    reads = tuple(
+        strip.read(normal)
+        for strip, normal, is_locator in zip(strips, outward, stands, strict=True)
+        if is_locator
+    )
     held = ElasticHold(
         columns, clamping, np.zeros((count, 6)), (reads,), np.zeros((len(reads), 0)),
         np.zeros((len(reads), count)), np.concatenate([tip.points for tip in tips]), float(size),
@@ -333,7 +343,7 @@ def make_strapped_hold(
         cells = list(faces.cells)
         for tip, top in zip(tips, tops, strict=True):
             x, y, _ = tip.middle.tolist()
-            cells += faces.make_cells_under((x, y), toolkit.strap_set.tip_radius, top)
+            cells += faces.make_cells_under((x, y), radius, top)
         resting = tuple(range(len(held.columns), len(held.columns) + len(cells)))
         pressing = tuple(cell.make_force(UP) for cell in cells)
         return evolve(
@@ -347,13 +357,13 @@ def make_strapped_hold(
         )
     plate = next(one for one in toolkit.carriers if one.has_lattice and one.travel is None)
     at = np.array([back.apply(*plate.compute_hole_center(*one)) for one in hold.supports])
-    radius = find_usual_pad_radius(toolkit)
-    borne = add_pads_below(held, at, radius).clamping[count:]
+    pad_radius = hold.pad_radius or find_usual_pad_radius(toolkit)
+    borne = add_pads_below(held, at, pad_radius).clamping[count:]
     if (borne < -1e-6 * strap_force).any():
         raise InputError("the straps tip the part off its supports, so that it is not known what bears it.")
-    pads = [make_disc(np.array([x, y, 0.0]), radius, -UP) for x, y in at]
+    pads = [make_disc(np.array([x, y, 0.0]), pad_radius, -UP) for x, y in at]
     limits = np.array([*[strap_force] * count, *np.maximum(borne, 1e-3 * strap_force)])
-    return add_pads_below(add_friction(held, (*tips, *pads), limits), at, radius)
+    return add_pads_below(add_friction(held, (*tips, *pads), limits), at, pad_radius)
 
 
 def add_friction(held: ElasticHold, patches: Sequence[LoadPatch], limits: Array) -> ElasticHold:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from ctypes import CDLL
 from functools import cached_property
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -33,11 +34,18 @@ MOST_TETRAHEDRA = 12_000
 # on so.
 FEW = {"grading": 0.8, "curvaturesafety": 0.8}
 MORE = ({"grading": 0.8, "curvaturesafety": 1.0}, {"grading": 0.3, "curvaturesafety": 2.0})
+# mm, in place of a thickness or a size of nothing.
+TINY = 1e-9
 # The mesher's rounds of making elements better; its threads wait for each other for longer than they work.
 COMMON = {"optsteps3d": 2, "parallel_meshing": False}
 # Sizes of elements are no larger than this many times a part's least extent: a plate then bends by its true
 # stiffness with one second-order element over its thickness.
 OF_LEAST_EXTENT = 2.0
+# Of a sheet, which then takes too many, they are larger, up to so many times its thickness: measured on sheets of 3 and 6
+# mm, figures then change by less than the error told. One layer of elements has about so many per square of their size.
+OF_SHEET, PER_SQUARE = 8.0, 6.5
+# Of the most tetrahedra, those for which such a size is chosen.
+ROOM = 0.8
 
 
 @define(eq=False)
@@ -68,10 +76,7 @@ def make_mesh(part: PartToBend) -> PartMesh:
     shape = part.build()
     try:
         low, high = (np.array([corner[k] for k in range(3)]) for corner in shape.bounding_box)
-        size = min(
-            (shape.mass / (SHARE * TETRAHEDRA)) ** (1 / 3), OF_LEAST_EXTENT * float((high - low).min())
-        )
-        mesh = mesh_shape(shape, size)
+        mesh = mesh_shape(shape, choose_size(float(shape.mass), float((high - low).min())))
     except list_mesher_errors() as error:
         raise InputError(
             "the part cannot be meshed, so it is not known how far it bends: repair its solid in the CAD program."
@@ -81,9 +86,39 @@ def make_mesh(part: PartToBend) -> PartMesh:
     if mesh.ne > MOST_TETRAHEDRA:
         raise InputError(
             f"the part needs {mesh.ne:,} elements, and the limit is {MOST_TETRAHEDRA:,}: leave small fillets "
-            "and holes out of the model; sheets much wider than they are thick cannot be computed."
+            "and holes out of the model."
         )
     return curve_mesh(mesh)
+
+
+def choose_size(volume: float, least: float) -> float:
+    """Return the size of elements in mm for a part with this volume in mm³ and least extent in mm.
+
+    Raises
+    ------
+    InputError
+        For a sheet so wide that it would take too many.
+
+    Examples
+    --------
+    A block, a plate, and a sheet of 600 by 400 by 3 mm:
+
+    >>> [round(choose_size(*one), 1) for one in ((60 * 40 * 30, 30), (120 * 70 * 4, 4), (600 * 400 * 3, 3))]
+    [7.5, 5.8, 12.7]
+    """
+    usual = float((volume / (SHARE * TETRAHEDRA)) ** (1 / 3))
+    size = min(usual, OF_LEAST_EXTENT * least)
+    area = volume / max(least, TINY)
+    if PER_SQUARE * area > MOST_TETRAHEDRA * size**2:
+        wanted = sqrt(PER_SQUARE * area / (ROOM * MOST_TETRAHEDRA))
+        size = min(usual, max(size, wanted), OF_SHEET * least)
+    needed = PER_SQUARE * area / max(size, TINY) ** 2
+    if needed > MOST_TETRAHEDRA:
+        raise InputError(
+            f"the part is a sheet that needs about {needed:,.0f} elements, and the limit is {MOST_TETRAHEDRA:,}: bend a "
+            "smaller piece of it, as wide as what is clamped and cut, or look at its thickness."
+        )
+    return size
 
 
 def mesh_shape(shape: Any, size: float) -> Any:

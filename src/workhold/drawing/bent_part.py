@@ -2,7 +2,8 @@
 
 The surface of the mesh is drawn from back to front, each triangle in the colour of its middle. Contacts dent
 the part locally, and the mesh does not resolve that; such places are grey. The place of the largest movement
-is marked, and the part is seen from the first of several directions that shows it.
+is marked, and the part is seen from the first of several directions that shows it. Where the part would yield, so is
+that of the largest stress.
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ LARGEST_SHOWN = 0.05
 VIEWS = [(turn, rise) for rise in (35.0, -35.0) for turn in (30.0, 300.0, 120.0, 210.0)]
 # Of the part's size, how far what hides a place lies in front of it at least.
 IN_FRONT = 0.005
+# Half the side of the square around the place of the largest stress, and its corners.
+HALF_SQUARE = 7.0
+AROUND = ((-1, -1), (1, -1), (1, 1), (-1, 1), (-1, -1))
 # How long the arrows are that show the axes.
 AXIS = 24.0
 # Colours from nothing to the most, from dark blue to yellow, of equal steps of lightness (B. Jin, N. Heitmann, S. van
@@ -140,22 +144,23 @@ class BentView:
         return not (is_over & (before > IN_FRONT * np.ptp(self.flat, axis=0).max())).any()
 
 
-def choose_view(bending: Bending, times: float, node: int) -> tuple[BentView, bool]:
-    """Return (view, is shown): the first view that shows a node, or where none does, the first view and
-    False.
+def choose_view(bending: Bending, times: float, nodes: Sequence[int]) -> tuple[BentView, list[bool]]:
+    """Return (view, is shown), where ``is shown`` says of each of the nodes whether it is seen.
+
+    The view is the first that shows all nodes, else the first that shows the first node, else the first of all.
     """
     views = [BentView.from_bending(bending, times, *angles) for angles in VIEWS]
-    for view in views:
-        if view.shows(node, bending.surface.triangles):
-            return view, True
-    return views[0], False
+    seen = [[view.shows(node, bending.surface.triangles) for node in nodes] for view in views]
+    best = max(range(len(views)), key=lambda k: (all(seen[k]), seen[k][0]))
+    return views[best], seen[best]
 
 
 def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit) -> None:
     """Draw the part, bent with an exaggeration and coloured, and its colour scale, into a page box."""
     surface, times = bending.surface, choose_exaggeration(bending)
-    mark = int(np.linalg.norm(surface.nodes - np.array(bending.clamp_distortion.at), axis=1).argmin())
-    view, is_shown = choose_view(bending, times, mark)
+    places = [bending.clamp_distortion.at, *([bending.stress.at] if bending.yields else [])]
+    marks = [int(np.linalg.norm(surface.nodes - np.array(at), axis=1).argmin()) for at in places]
+    view, are_shown = choose_view(bending, times, marks)
     scale_height = 34.0
     room = Box(box.x0, box.y0, box.x1, box.y1 - scale_height)
     flat = view.flat
@@ -174,12 +179,18 @@ def draw_bent_part(scene: Scene, box: Box, bending: Bending, lengths: LengthUnit
         fill = to_hex(colours[number] * light[number])
         points = [(float(x[node]), float(y[node])) for node in shown[number, :3]]
         group.add_polygon(points, fill, fill, 0.4)
-    draw_mark(scene, (float(x[mark]), float(y[mark])), is_shown)
+    for number, (mark, is_shown) in enumerate(zip(marks, are_shown, strict=True)):
+        draw_mark(scene, (float(x[mark]), float(y[mark])), is_shown, is_square=number > 0)
     draw_axes(scene, (box.x1 - 1.8 * AXIS, box.y1 - 1.4 * AXIS), view)
     notes = Box(box.x0, box.y1 - scale_height + 8, box.x1, box.y1)
-    ring = "Ring: most." if is_shown else "Dashed ring: most, which is hidden."
-    below = "Seen from below. " if view.is_from_below else ""
-    draw_scale(scene, notes, bending, lengths, times, f"{below}{ring} Grey: pressed, not counted.")
+    said = ["Seen from below."] if view.is_from_below else []
+    said.append("Ring: most." if are_shown[0] else "Dashed ring: most, which is hidden.")
+    if len(marks) > 1:
+        square = (
+            "Square: most stressed, might yield" if are_shown[1] else "Dashed square: most stressed, hidden"
+        )
+        said.append(f"{square}.")
+    draw_scale(scene, notes, bending, lengths, times, " ".join([*said, "Grey: pressed, not counted."]))
 
 
 def draw_axes(scene: Scene, at: tuple[float, float], view: BentView) -> None:
@@ -192,11 +203,18 @@ def draw_axes(scene: Scene, at: tuple[float, float], view: BentView) -> None:
         group.add_text(beyond, name, 8, anchor="middle")
 
 
-def draw_mark(scene: Scene, at: tuple[float, float], is_shown: bool) -> None:
-    """Draw a ring around the page point of the largest movement."""
+def draw_mark(scene: Scene, at: tuple[float, float], is_shown: bool, is_square: bool) -> None:
+    """Draw a ring around the page point of the largest movement, or a square around that of the largest stress.
+
+    It is dashed where the place is hidden.
+    """
     dashes = {} if is_shown else {"stroke_dasharray": "3 2"}
-    scene.add_circle(at, 6.0, stroke="#ffffff", width=3.5)
-    scene.add_circle(at, 6.0, stroke="#d50000", width=1.8, **dashes)
+    for colour, width, dashed in (("#ffffff", 3.5, {}), ("#d50000", 1.8, dashes)):
+        if is_square:
+            corners = [(at[0] + i * HALF_SQUARE, at[1] + j * HALF_SQUARE) for i, j in AROUND]
+            scene.add_line(corners, colour, width, **dashed)
+        else:
+            scene.add_circle(at, 6.0, stroke=colour, width=width, **dashed)
 
 
 def draw_scale(

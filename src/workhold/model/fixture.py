@@ -808,6 +808,7 @@ class Fixture:
         supports: Supports | None = None,
         best: int = 1,
         clamp_force: float | None = None,
+        straps: StrappedHold | None = None,
     ) -> Bending:
         """Return how far clamping bends the part (this springs back after the cut), and how far the part
         moves at the cutter.
@@ -827,6 +828,8 @@ class Fixture:
         supports : pads under the part and a clamp on top: a result of :meth:`supports`.
         best : number, from 1, of the set of three among ``supports``.
         clamp_force : force in N of the clamp on top; None for the force that it needs.
+        straps : straps that hold the part in place of its side clamps: a result of :meth:`straps`. ``jaw_force`` is
+            then that of each strap, and None the force that they need.
 
         Raises
         ------
@@ -847,6 +850,7 @@ class Fixture:
             supports=supports,
             best=best,
             clamp_force=clamp_force,
+            straps=straps,
         )
 
 

@@ -236,6 +236,8 @@ class StrappedHold:
     program_need : force of each strap that the program's tools need; None without their forces.
     safety_each : how many times the strap force that the query gives holds each load, then the program; 0
         where no force holds, inf where none is needed. Empty where no force is given.
+    tip_radius, pad_radius, support_height : of straps that were asked for a fixture with side clamps, whose toolkit
+        has none, in mm; None where the toolkit says it, and without supports.
     """
 
     straps: tuple[Strap, ...]
@@ -247,6 +249,9 @@ class StrappedHold:
     supports: tuple[tuple[int, int], ...] = ()
     program_need: ProgramJawForce | None = None
     safety_each: tuple[float, ...] = ()
+    tip_radius: float | None = None
+    pad_radius: float | None = None
+    support_height: float | None = None
 
     @property
     def needs(self) -> tuple[float | None, ...]:

@@ -111,6 +111,7 @@ def compute_bending(
     supports: Supports | None = None,
     best: int = 1,
     clamp_force: float | None = None,
+    straps: StrappedHold | None = None,
 ) -> Bending:
     """Return how far a fixture bends its part, see :meth:`workhold.Fixture.bending`."""
     listed = fixture.listing
@@ -118,6 +119,8 @@ def compute_bending(
     below = {}
     if supports is not None:
         below[listed.row] = find_pads_below(supports, best, shape, clamp_force)
+    if straps is not None and supports is not None:
+        raise InputError("straps press the part on their own supports: leave one of straps and supports out.")
     asked = BendingQuestion(
         find_material(material) if isinstance(material, str) else material,
         thickness,
@@ -125,6 +128,7 @@ def compute_bending(
         tuple(faces),
         read_jaw_stiffness(jaw),
         below,
+        {} if straps is None else {listed.row: straps},
     )
     query = listed.result.query
     whole = make_shape_to_bend(query, asked.find_part_height(query), shape)

@@ -318,7 +318,12 @@ def ask_for_straps(
         given_force=force,
         support_height=choose_support_height(query, pads),
     )
-    return find_straps(fixture, query, asked)
+    return evolve(
+        find_straps(fixture, query, asked),
+        tip_radius=straps.tip_radius,
+        pad_radius=None if pads is None else request.pad_radius,
+        support_height=None if pads is None else asked.support_height,
+    )
 
 
 @frozen(eq=False)

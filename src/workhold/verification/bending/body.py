@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache, cached_property
 from importlib import import_module
+from math import sqrt
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -41,6 +42,9 @@ IntArray = NDArray[np.int64]
 # The mesh that figures of a file are of: about so many tetrahedra, each of this share of the cube of its size, no larger
 # than twice the least extent of the part, graded so; and what is tried next where the mesher fails.
 TETRAHEDRA, SHARE, OF_EXTENT = 1000, 0.17, 2.0
+# A sheet that so takes more than MOST has elements up to eight times its thickness, of which one layer has so many per
+# square of their size.
+MOST, OF_SHEET, PER_SQUARE, ROOM = 12_000, 8.0, 6.5, 0.8
 GRADED = ((0.8, 0.8), (0.8, 1.0), (0.3, 2.0))
 # Barycentric coordinates (15, 2) of the nodes of a face, in the order in which they are read.
 NODES = np.array([(i, j) for i in range(5) for j in range(5 - i)], np.float64) / 4
@@ -301,6 +305,24 @@ def find_nearest(point: Array, corners: Array) -> Array:
     return best
 
 
+def choose_size(volume: float, thin: float) -> float:
+    """Return the size of elements in mm of a part with this volume in mm³ and least extent in mm.
+
+    Raises
+    ------
+    MeshError
+        For a sheet that takes too many.
+    """
+    most = float((volume / (SHARE * TETRAHEDRA)) ** (1 / 3))
+    size = min(most, OF_EXTENT * thin)
+    layer = PER_SQUARE * volume / thin if thin > 0.0 else np.inf
+    if layer / size**2 > MOST:
+        size = min(most, max(size, sqrt(layer / (ROOM * MOST))), OF_SHEET * thin)
+    if layer / size**2 > MOST:
+        raise MeshError("the part is a sheet that takes too many elements")
+    return size
+
+
 def make_judged_mesh(part: Workpiece, thickness: float, kept: str | None, finer: float = 1.0) -> JudgedMesh:
     """Return the mesh that figures of a file are of, or with ``finer`` above 1 one with smaller elements.
 
@@ -314,7 +336,7 @@ def make_judged_mesh(part: Workpiece, thickness: float, kept: str | None, finer:
     try:
         shape = make_shape(part, thickness, kept)
         low, high = (np.array(list(corner)) for corner in shape.bounding_box)
-        size = min((shape.mass / (SHARE * TETRAHEDRA)) ** (1 / 3), OF_EXTENT * float((high - low).min()))
+        size = choose_size(float(shape.mass), float((high - low).min()))
         whole, made = shapes.OCCGeometry(shape), None
         for grading, curving in GRADED:
             with suppress(*failures), keep_quiet():

@@ -51,6 +51,8 @@ UP = np.array([0.0, 0.0, 1.0])
 # Figures of the same mesh agree to this share, errors to this share of themselves and of their figure, and both to so
 # many mm or MPa.
 SAME, SAME_ERROR, NOTHING = 0.01, 0.05, 1e-6
+# Of a mesh with more elements a finer one would take minutes.
+MOST_FOR_FINER = 6000
 # How much finer the second mesh is, and by what share of a movement it may be beyond the stated error.
 FINER, BEYOND = 1.5, 0.01
 # What is added to twice the change of a stress, of it; radius of a load's disc in mm; directions of its range; how many
@@ -139,21 +141,26 @@ class BendingJudge:
         if not is_whole:
             return
         mesh = self.find_mesh(told, 1.0)
-        finer = self.find_mesh(told, FINER)
+        is_large = isinstance(mesh, JudgedMesh) and int(mesh.made.ne) > MOST_FOR_FINER
+        fine = 1.0 if is_large else FINER
+        finer = self.find_mesh(told, fine)
         if isinstance(mesh, str) or isinstance(finer, str):
             yield Finding(
                 False, f"its bending was not computed again: {mesh if isinstance(mesh, str) else finer}"
             )
             return
         try:
-            yield from self.judge_on(fixture, told, mesh, finer)
+            yield from self.judge_on(fixture, told, mesh, finer, fine)
         except MeshError as error:
             yield Finding(True, f"its bending cannot be computed: {error}")
 
     def judge_on(
-        self, fixture: Fixture, told: BendingFigures, mesh: JudgedMesh, finer: JudgedMesh
+        self, fixture: Fixture, told: BendingFigures, mesh: JudgedMesh, finer: JudgedMesh, fine: float
     ) -> Iterator[Finding]:
-        """Yield the findings of figures, on the mesh that they are of and on a finer one."""
+        """Yield the findings of figures, on the mesh that they are of and on a finer one.
+
+        ``fine`` says how much finer that is; 1 for a part that takes too many elements for that.
+        """
         setting = make_pressed_setup(fixture, self.query, self.hardware, told)
         is_same = int(mesh.made.ne) == told.elements
         if is_same:
@@ -161,7 +168,7 @@ class BendingJudge:
             yield from self.judge_distortion(told, setting, second, third)
             yield from self.judge_stress(told, setting, second, third)
             yield from self.judge_give(fixture, told, setting)
-        exact = self.clamp(self.find_body(told, FINER, 3), setting, told)
+        exact = self.clamp(self.find_body(told, fine, 3), setting, told)
         at = np.array([told.clamp_distortion.at])
         moved = float(np.linalg.norm(exact.read(*finer.locate(at[0]), at)))
         stated = told.clamp_distortion
