@@ -407,7 +407,8 @@ def test_a_wide_sheet_takes_larger_elements_and_a_wider_one_is_refused(
     # Long before anything is meshed.
     with pytest.raises(InputError, match="the part is a sheet"):
         make_mesh(PrismShape(block(80.0, 60.0), 1e-3))
-    monkeypatch.setattr(meshing, "MOST_TETRAHEDRA", 3000)
+    monkeypatch.setattr(meshing, "TETRAHEDRA", 150)
+    monkeypatch.setattr(meshing, "MOST_TETRAHEDRA", 1500)
     sheet = PrismShape(block(200.0, 130.0), 3.0)
     coarse = make_mesh(sheet)
     monkeypatch.setattr(meshing, "MOST_TETRAHEDRA", 12000)
