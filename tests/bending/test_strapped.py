@@ -369,7 +369,7 @@ def test_a_fixture_with_clamps_is_bent_under_straps_alone(over: str) -> None:
     first = workhold.design(block, plate, best=1, loads=[load], jaw_force=90.0)[0]
     held = first.straps(5, count=2 if over == "plate" else 3, over=over)
     told = first.bending(thickness=5, straps=held)
-    assert told.jaw_force == pytest.approx(held.clamp_needed) and not told.is_stated
+    assert told.jaw_force == pytest.approx(held.clamp_needed) and not told.is_assumed
     twice = first.bending(thickness=5, straps=held, jaw_force=2 * told.jaw_force)
     assert twice.clamp_distortion.value == pytest.approx(2 * told.clamp_distortion.value, rel=1e-6)
     # No side clamp presses: far from the straps nothing is stressed.

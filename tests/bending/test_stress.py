@@ -157,7 +157,7 @@ def test_what_is_nearly_as_strong_might_yield() -> None:
 
 def test_without_a_force_nobody_is_warned() -> None:
     bent = bend_channel(1600.0)
-    stated = evolve(bent, jaw_force=1000.0, is_stated=True)
+    stated = evolve(bent, jaw_force=1000.0, is_assumed=True)
     assert stated.yields is None and stated.list_warnings(None, MILLIMETRE) == []
 
 
