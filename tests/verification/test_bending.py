@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -199,7 +200,7 @@ def test_flat_jaws_are_not_checked() -> None:
     )
     held = result.bend(thickness=20.0, best=1, jaw_force=2000.0)
     outcome = verify(held)
-    assert outcome.holds and "plain vise is not computed again" in outcome.unchecked[0]
+    assert outcome.holds and "between flat jaws is not computed again" in outcome.unchecked[0]
     odd = evolve(held.bending[0], faces=(77,))
     assert verify(evolve(held, bending={0: odd})).refuted == 1
 
@@ -243,3 +244,26 @@ def test_the_command_says_what_is_refuted_and_what_was_not_checked(
     assert unchecked.exit_code == 0 and "How far fixtures bend the part was not checked" in unchecked.stdout
     told = json.loads(CliRunner().invoke(app, ["verify", str(bad), "--json"]).stdout)
     assert len(told["unchecked"]) == 1
+
+
+@pytest.mark.parametrize(("stretches", "faults"), [([], 0), ([3], 1)])
+def test_tools_that_touch_nothing_make_nothing_give(bent: Result, stretches: list[int], faults: int) -> None:
+    forces = SimpleNamespace(stretches=SimpleNamespace(move=stretches))
+    query = SimpleNamespace(
+        loads=(), program=SimpleNamespace(forces=forces), jaw_force=None, workpiece=bent.workpiece
+    )
+    told = evolve(bent.bending[0], give=None)
+    found = list(judge.BendingJudge(query).judge_statement(told))  # type: ignore[arg-type]
+    assert len(found) == faults
+
+
+@pytest.mark.thorough
+def test_a_place_on_the_edge_of_what_is_cut_counts() -> None:
+    vise, heights = workhold.Vise(pitch=10, columns=3, peg_radius=3), []
+    for face in range(5):
+        wall = bend(vise, faces=(face,), best=1)
+        heights.append(wall.bending[0].clamp_distortion.at[2])
+        assert verify(wall).proven == 2
+    # The largest movement of a wall is mostly at its rim, which belongs to the upper or the lower side as well.
+    assert {0.0, 8.0} & set(heights)
+    assert not verify(evolve(wall, bending={0: evolve(wall.bending[0], faces=("bottom",))})).holds

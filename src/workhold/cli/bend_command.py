@@ -198,11 +198,35 @@ def bend(
         raise typer.Exit(INTERRUPTED)
 
 
+def format_numbers(numbers: Sequence[int]) -> str:
+    """Return numbers in words, in rising order.
+
+    >>> format_numbers([7, 2]), format_numbers([1, 4, 3])
+    ('2 and 7', '1, 3 and 4')
+    """
+    *before, last = map(str, sorted(numbers))
+    return f"{', '.join(before)} and {last}" if before else last
+
+
 def print_warnings(ranked: list[tuple[int, Bending]], limit: float | None, unit: Unit) -> None:
-    """Print the warnings of all fixtures, of figures above ``limit`` in mm and of parts that would yield."""
+    """Print the warnings of fixtures, of figures above ``limit`` in mm and of parts that would yield.
+
+    Of each kind the first fixture has its sentence, and the numbers of the others follow in one line.
+    """
+    kinds: dict[str, list[tuple[int, str]]] = {}
     for row, one in ranked:
-        for sentence in one.list_warnings(limit, unit):
-            print_remark(f"fixture {row + 1}: {sentence}")
+        for kind, sentence in one.find_warnings(limit, unit).items():
+            kinds.setdefault(kind, []).append((row + 1, sentence))
+    for kind, warned in kinds.items():
+        (first, sentence), others = warned[0], [number for number, _ in warned[1:]]
+        print_remark(f"fixture {first}: {sentence}")
+        if others:
+            more = "" if limit is None else f" by more than {unit.format_small_length(limit)}"
+            does = {"stress": "might yield", "clamp_distortion": f"are bent{more}", "give": f"give{more}"}[
+                kind
+            ]
+            named = "fixture" if len(others) == 1 else "fixtures"
+            print_remark(f"the parts of {named} {format_numbers(others)} {does}, too.")
 
 
 def read_question(words: BendWords, unit: Unit) -> BendingQuestion:

@@ -300,11 +300,17 @@ class BendingFigures:
 
         Where the limit is None there are none of figures.
         """
-        found = []
+        return list(self.find_warnings(limit, unit).values())
+
+    def find_warnings(self, limit: float | None, unit: Unit) -> dict[str, str]:
+        """Return the warnings of :meth:`list_warnings` by the key of what they are about: "stress" or that of a
+        figure.
+        """
+        found = {}
         if self.yields and self.material.strength is not None:
             least = self.stress.value - self.stress.error
             would = "would yield" if least >= self.material.strength else "might yield"
-            found.append(
+            found["stress"] = (
                 f"The part {would}: clamping stresses it by {self.stress.describe(unit)}, and {self.material.name} is "
                 f"reckoned to bear {unit.format_stress(self.material.strength)}. Clamp it less hard or where it is thicker, "
                 "or support the wall."
@@ -313,15 +319,14 @@ class BendingFigures:
             return found
         more = f"more than {unit.format_small_length(limit)}"
         if self.clamp_distortion.value > limit:
-            found.append(
+            found["clamp_distortion"] = (
                 f"Clamping bends the part by {unit.format_small_length(self.clamp_distortion.value)}, {more}: clamp it "
                 "less hard or where it is thicker, or leave some stock and clamp it anew for the last cut."
             )
         if self.give is not None and self.give.value > limit:
-            found.append(
+            found["give"] = (
                 f"The part gives by {unit.format_small_length(self.give.value)} at the cutter, {more}: support it "
-                "nearer to "
-                "the cut, or cut less at once there."
+                "nearer to the cut, or cut less at once there."
             )
         return found
 

@@ -241,14 +241,18 @@ class JudgedMesh:
             faces[number], shares[number] = own[best], found[best, :2]
         return faces, shares
 
-    def locate(self, point: Array) -> tuple[IntArray, Array]:
-        """Return (face (1,), barycentric coordinates (1, 2)) of the point of the curved faces nearest to a point (3,)."""
-        found = find_nearest(point, self.corners)
-        away = np.linalg.norm(np.einsum("fc,fck->fk", found, self.corners) - point, axis=1)
+    def locate(self, point: Array, own: IntArray | None = None) -> tuple[IntArray, Array, float]:
+        """Return (face (1,), barycentric coordinates (1, 2), distance in mm) of the point of the curved faces nearest to
+        a point (3,).
+
+        Only the faces ``own`` are looked at; None for all.
+        """
+        own = np.arange(len(self.faces)) if own is None else own
+        found = find_nearest(point, self.corners[own])
+        away = np.linalg.norm(np.einsum("fc,fck->fk", found, self.corners[own]) - point, axis=1)
         best, least = (0, np.zeros(2)), np.inf
-        for face in np.argsort(away)[:NEAREST].tolist():
-            share = found[face, :2].copy()
-            six = self.nodes[face, SIX]
+        for number in np.argsort(away)[:NEAREST].tolist():
+            share, six = found[number, :2].copy(), self.nodes[own[number], SIX]
             for _ in range(STEPS):
                 values, slopes = compute_quadratics(share)
                 step, *_ = np.linalg.lstsq(six.T @ slopes, point - values @ six, rcond=None)
@@ -256,8 +260,8 @@ class JudgedMesh:
                 share /= max(share.sum(), 1.0)
             far = float(np.linalg.norm(compute_quadratics(share)[0] @ six - point))
             if far < least:
-                best, least = (face, share), far
-        return np.array([best[0]]), best[1][None]
+                best, least = (int(own[number]), share), far
+        return np.array([best[0]]), best[1][None], least
 
 
 def compute_quadratics(share: Array) -> tuple[Array, Array]:

@@ -36,7 +36,8 @@ class BendingRuling:
 def find_obstacle(query: Query, kept: str | None) -> str:
     """Return why the bending of a query's fixtures cannot be computed again, as a clause; "" where it can."""
     if query.toolkit.holds_by_friction:
-        return f"that of a {query.toolkit.noun} is not computed again"
+        held = "under straps" if query.toolkit.strap_set is not None else "between flat jaws"
+        return f"that of a part {held} is not computed again"
     if not has_elements():
         return f"that takes a library that is not installed: pip install '{REQUIREMENT}'"
     if query.workpiece.solid is not None and kept is None:

@@ -170,7 +170,7 @@ class BendingJudge:
             yield from self.judge_give(fixture, told, setting)
         exact = self.clamp(self.find_body(told, fine, 3), setting, told)
         at = np.array([told.clamp_distortion.at])
-        moved = float(np.linalg.norm(exact.read(*finer.locate(at[0]), at)))
+        moved = float(np.linalg.norm(exact.read(*finer.locate(at[0])[:2], at)))
         stated = told.clamp_distortion
         if abs(stated.value - moved) > stated.error + BEYOND * moved + NOTHING:
             yield Finding(
@@ -210,7 +210,9 @@ class BendingJudge:
         if unknown := [face for face in told.faces if face not in known]:
             yield Finding(True, f"face {unknown[0]} to be cut does not exist")
         program = self.query.program
-        acts = bool(self.query.loads) or (program is not None and program.forces is not None)
+        forces = None if program is None else program.forces
+        # Tools that touch nothing press on nothing.
+        acts = bool(self.query.loads) or (forces is not None and len(forces.stretches.move) > 0)
         if (told.give is not None) != acts:
             yield Finding(True, "how far it gives is missing" if acts else "it gives where nothing acts")
 
@@ -347,7 +349,7 @@ class BendingJudge:
         """Yield a finding where the stated movement by clamping, its error or its place is wrong."""
         stated, mesh = told.clamp_distortion, third.moved.body.mesh
         at = np.array([stated.at])
-        faces, shares = mesh.locate(at[0])
+        faces, shares, _ = mesh.locate(at[0])
         after, before = (one.read(faces, shares, at)[0] for one in (third, second))
         value, change = float(np.linalg.norm(after)), float(np.linalg.norm(after - before))
         yield from judge_figure("clamp_distortion", "mm", stated.value, value)
@@ -357,7 +359,8 @@ class BendingJudge:
                 f"the error of clamp_distortion is given as {stated.error:g} mm, and is {2 * change:.6g} mm",
             )
         counts = self.find_cut(told, mesh)
-        if not counts[faces[0]].any() or measure_nearest(at, setting.pressed)[0] < BESIDE - AT_NODE:
+        is_cut = mesh.locate(at[0], np.flatnonzero(counts.all(axis=1)))[2] < AT_NODE
+        if not is_cut or measure_nearest(at, setting.pressed)[0] < BESIDE - AT_NODE:
             yield Finding(True, "clamp_distortion is stated at a place that does not count")
         sizes = np.where(counts, np.linalg.norm(third.at_nodes, axis=2), 0.0)
         most = self.find_most(sizes, mesh, setting.pressed, stated.value * (1 + SAME) + NOTHING)
