@@ -356,10 +356,10 @@ def list_toolkits_to_try(
         for row, text in given
     ]
     if kind is not None:
-        refuse_missing_fields(find_table(kind), given)
+        refuse_unknown_fields(find_table(kind), given)
     if names is None and varied.has_pitches:
         refuse_missing_fields(find_table(kind or USUAL), {*said, *(row.name for row, _ in given)}, given)
-        refuse_missing_fields(find_table(kind or USUAL), given)
+        refuse_unknown_fields(find_table(kind or USUAL), given)
         bases = [NamedToolkit("", kind or USUAL, dict(said))]
     else:
         bases = load_named_toolkits(names, kind, said, given)
@@ -392,7 +392,7 @@ def load_named_toolkits(
     else:
         loaded = [load_toolkit(name) for words in names for name in split_words("--vise", words)]
         for one in loaded:
-            refuse_missing_fields(find_table(one.kind), given)
+            refuse_unknown_fields(find_table(one.kind), given)
     # A kind picks those of the kind, and makes one sort of toolkit of another.
     bases = [
         NamedToolkit(one.name, kind or one.kind, {**one.fields, **said}, one.tolerance)
@@ -414,7 +414,7 @@ def list_unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]
     return [row for row, _ in given if row.name not in known]
 
 
-def refuse_missing_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
+def refuse_unknown_fields(table: FieldTable, given: list[tuple[ToolkitField, str]]) -> None:
     """Raise InputError for a varied field that a kind's table lacks."""
     from workhold.fixels.kinds import find_owner
 
