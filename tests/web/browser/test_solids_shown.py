@@ -346,3 +346,17 @@ def test_solids_are_accessible(walk: Walk, block: str) -> None:
     assert walk.page.evaluate(CHECK)[1] == []
     held(walk, block)
     assert walk.page.evaluate(CHECK)[1] == []
+
+
+def test_a_solid_is_held_in_a_plain_vise(walk: Walk, tmp_path: Path) -> None:
+    """Jaws on each height of parallels meet an outline of their own, which is read from the file before the search."""
+    page = walk.page
+    page.set_input_files("#file", str(write_step(tmp_path / "plain.step", box(80, 60, 30))))
+    walk.seen("#faces button")
+    page.select_option("#preset", "plain-vise-6-inch")
+    assert page.locator("#part-thickness-label").is_hidden()
+    page.click("#search")
+    page.wait_for_selector('body[data-search="done"]')
+    page.wait_for_selector("#quality tr")
+    row = page.evaluate("async () => (await import('/static/state.js')).state.selected")
+    assert row["quality"]["grip"] + row["quality"]["above"] == 30 and row["hold"]["knows_height"]

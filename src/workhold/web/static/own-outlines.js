@@ -12,8 +12,16 @@ import { kindOf, same } from "./toolkits.js";
  * @returns {Object<string, number[]>}
  */
 export function heightsOf(toolkit) {
+  if (toolkit.parallels !== undefined) return heightsOfJaws(toolkit);
   const { roles } = kindOf(toolkit);
   return Object.fromEntries(Object.keys(roles).filter((name) => toolkit[name]).map((name) => [roles[name], toolkit[name]]));
+}
+
+/** What two flat jaws cover of a part on each height of parallels, under the names that the server has for them. */
+function heightsOfJaws({ jaw_height: high, parallels }) {
+  if (!high) return {};
+  const tops = (parallels.length ? parallels : [0]).map((under) => high - under).filter((top) => top > 0);
+  return Object.fromEntries(tops.map((top) => [`jaws up to ${Number(Number(top.toFixed(6)).toPrecision(6))} mm`, [0, top]]));
 }
 
 /** See to it that the part shown has the outlines that the toolkit's carriers meet. */
