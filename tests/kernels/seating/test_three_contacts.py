@@ -22,13 +22,13 @@ from workhold.kernels.seating.three_contacts import (
     may_balance,
     write_three_contacts,
 )
-from workhold.kernels.seating.two_contact_curves import compute_pair_state, read_pair_state, read_ray
+from workhold.kernels.seating.two_contact_curves import Ray, compute_pair_state, read_pair_state, read_ray
 from workhold.seating.closing import fill_rows
 from workhold.seating.pattern import Pattern
 
 # mm, and a share. Rounding of an instant centre, which may be a kilometre off.
 ROUNDING, SHARE = 1e-6, 1e-6
-STILL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+STILL = Ray(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def cells_of(number):
