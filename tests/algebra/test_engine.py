@@ -154,6 +154,7 @@ def test_three_equal_arcs_that_all_slide() -> None:
     assert assert_engines_agree(part, Vise(pitch=(10.0, 10.0 * sqrt(3.0)), columns=3, peg_radius=2.0)) > 0
 
 
+@pytest.mark.thorough
 def test_concentric_arcs_and_a_whole_circle() -> None:
     """Three normals through one point never close: a disc has no fixture, a disc with a flat has."""
     vise = Vise(pitch=10.0, columns=2, peg_radius=2.0)

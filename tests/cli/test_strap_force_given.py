@@ -45,6 +45,7 @@ def test_words_of_command_and_sheet(run, tmp_path):
     )
 
 
+@pytest.mark.thorough
 def test_words_of_the_command_straps(run, tmp_path):
     path = str(tmp_path / "clamped.json")
     workhold.save(workhold.design(BLOCK, Plate(20, 3, 8, 6, clamps=2), best=1), path)

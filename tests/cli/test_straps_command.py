@@ -23,6 +23,7 @@ def result_file(tmp_path_factory: Any) -> str:
     return str(path)
 
 
+@pytest.mark.thorough
 def test_bolts_heels_push_and_force_are_said(run: Any, result_file: str) -> None:
     outcome = run("straps", result_file, "1", *LOADED, "--strap-force", "1000")
     assert outcome.exit_code == 0, outcome.stderr
@@ -36,6 +37,7 @@ def test_bolts_heels_push_and_force_are_said(run: Any, result_file: str) -> None
     assert "a strap is rated for 1000 N" in outcome.stderr
 
 
+@pytest.mark.thorough
 def test_json_has_what_the_tables_have(run: Any, result_file: str) -> None:
     outcome = run("straps", result_file, "1", *LOADED, "--friction", "tip=0.2,plate=0.2", "--json")
     found = json.loads(outcome.stdout)

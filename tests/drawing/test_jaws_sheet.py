@@ -33,6 +33,7 @@ def test_each_setting_stands_on_the_sheet_once(loads: tuple[object, ...]) -> Non
     assert [words.count(name) for name in SETTINGS] == [1] * len(SETTINGS)
 
 
+@pytest.mark.thorough
 def test_numbers_of_times_are_rounded_down_everywhere() -> None:
     """On sheet, picture, terminal and page, and in the warning: 1.99 times for a hair less than twice."""
     need = held(loads=LOADS[:2])[0].hold.clamp_needed

@@ -38,6 +38,7 @@ def empty() -> Scene:
     return Scene.make_page((100.0, 60.0), "test")
 
 
+@pytest.mark.thorough
 def test_sheet_holds_its_words_as_text() -> None:
     """Every page can be searched for what stands on it, and the document has its title."""
     pages = draw_sheet(*diamond(), DETAILS)
@@ -60,6 +61,7 @@ def test_page_has_the_size_of_the_paper(paper: str) -> None:
     assert sorted(document[0].get_size()) == pytest.approx(sorted(expected), abs=0.02)
 
 
+@pytest.mark.thorough
 def test_typefaces_are_embedded() -> None:
     """Every font has its program in the file, so that it looks the same everywhere."""
     content = convert_svg_to_pdf(draw_sheet(*diamond(), DETAILS), DAY)

@@ -25,6 +25,7 @@ def pixels(png: bytes) -> bytes:
     return zlib.decompress(data)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("width", [200, 1000])
 def test_png_has_the_width_asked_for_and_is_not_blank(width: int) -> None:
     """Signature, header, and more than one value among the pixels."""

@@ -99,6 +99,7 @@ def test_blocks_that_need_a_third_page_get_one(result: Result, told: list[Seatin
     assert all(f"Place {k} where" in words for k in range(30))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("unit", [MILLIMETRE, INCH])
 @pytest.mark.parametrize("number", range(4))
 def test_bounds_are_never_told_too_wide(result: Result, told: list[Seating], unit: Unit, number: int) -> None:

@@ -26,6 +26,7 @@ def boxes_and_numbers(svg: str) -> tuple[list[tuple[float, ...]], list[tuple[flo
     return boxes, [(float(text.attrib["x"]), float(text.attrib["y"]) - 4) for text in texts]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("part", [rectangle(60, 40), rectangle(), ELL], ids=["small", "block", "ell"])
 def test_no_label_covers_a_strap_s_number(part: workhold.Workpiece) -> None:
     plate = workhold.StrapPlate(pitch=20, peg_radius=3, columns=9, rows=7, straps=3)

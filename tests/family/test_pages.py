@@ -140,6 +140,7 @@ def test_what_is_moved_is_told(families: dict[str, Family]) -> None:
     assert list(describe_moves(before, before)) == ["After the set-up before: all pegs stay."]
 
 
+@pytest.mark.thorough
 def test_pegs_in_other_columns_are_named(families: dict[str, Family]) -> None:
     family = families["largest opening"]
     apart = [

@@ -110,6 +110,7 @@ def test_a_shifted_fixture_is_one_of_the_same_pattern(results: dict[str, Result]
         )
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["vise", "offset rows", "opening vise", "two clamps"])
 def test_half_a_turn_gives_a_fixture_whose_half_turn_is_the_first(
     results: dict[str, Result], name: str

@@ -134,6 +134,7 @@ def meets_stop(one: Holding, setup: SetUp, jaws) -> bool:
     return low - quarter - 1e-3 <= level <= high + quarter + 1e-3
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(6))
 def test_the_fewest_set_ups_are_those_of_trying_everything(seed):
     queries = shop_blocks(7, seed)
@@ -347,6 +348,7 @@ def test_the_order_has_the_fewest_changes():
     assert [JawSetUp.from_words(one.words) for one in setups] == setups
 
 
+@pytest.mark.thorough
 def test_the_file_and_the_sheets_say_what_is_set():
     load = Load(points=(20, 10), force=300, directions=0)
     family = plan_family(

@@ -492,6 +492,7 @@ def test_restrictions_leave_what_filtering_the_whole_list_leaves() -> None:
     assert len(restricted) == len(kept) > 0
 
 
+@pytest.mark.thorough
 def test_a_symmetric_part_counts_its_copies_once() -> None:
     """Half a turn of a rectangle carries every fixture into another one."""
     for directions in (None, [("-x", "+x")]):

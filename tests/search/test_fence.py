@@ -94,6 +94,7 @@ def test_a_separate_slow_search_finds_the_same(loop: list[tuple[float, ...]], fe
     assert len(seen(result)) == len(result) > 10
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(6)
 @pytest.mark.parametrize("loop", [KITE, NOTCHED, FEET, L], ids=["kite", "notched", "feet", "l"])
 @pytest.mark.parametrize(
@@ -184,6 +185,7 @@ def full(loop: list[tuple[float, ...]]) -> list[tuple[float, float, float]]:
     return [(x, y, b) for x, y, b in loop]
 
 
+@pytest.mark.thorough
 def test_half_the_pitch_longer_strokes_more_holes_and_directions_keep_all_fixtures() -> None:
     """A pitch that is divided by two lists all the old fixtures when the first row stays; the others are limits only."""
 

@@ -265,6 +265,7 @@ def stands(corners: np.ndarray, places: np.ndarray, normals: np.ndarray, radius:
     return True
 
 
+@pytest.mark.thorough
 def test_the_best_are_those_of_the_whole_list_and_threads_change_nothing() -> None:
     plate = Plate((20, 16), 3, directions=["-x", "-y"])
     whole = design(part(NOTCHED), plate, threads=1)

@@ -171,6 +171,7 @@ def test_every_form_says_the_same(seated: Result, tmp_path: Path) -> None:
     assert list(frame.columns) == list(rows[0])
 
 
+@pytest.mark.thorough
 def test_a_file_with_a_seating_that_is_none_is_refused(seated: Result, tmp_path: Path) -> None:
     path = tmp_path / "a.json"
     workhold.save(seated, path)

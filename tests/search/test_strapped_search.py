@@ -173,6 +173,7 @@ def test_seats_of_clamps_are_among_them():
             assert is_among((holes, tuple(peg[2] for peg in pegs), fixture.pose.theta_deg), ours)
 
 
+@pytest.mark.thorough
 def test_seats_follow_the_part_and_fewer_holes_are_a_subset():
     _, small = seats_of(ELL, 20, 4, 4)
     _, large = seats_of(ELL, 20, 5, 4)

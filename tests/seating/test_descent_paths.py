@@ -185,6 +185,7 @@ def test_nothing_depends_on_what_was_followed_before(ways, monkeypatch):
         assert [part.tobytes() for part in again] == [part.tobytes() for part in ways[2 * number][3]]
 
 
+@pytest.mark.thorough
 def test_ways_are_followed_once(ways, monkeypatch):
     """A second time none is; and some serve several patterns."""
     closing, found, seats, _ = ways[0]

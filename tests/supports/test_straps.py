@@ -75,6 +75,7 @@ def test_the_force_is_that_of_a_program_that_shares_nothing(part):
     assert seen >= 3
 
 
+@pytest.mark.thorough
 def test_friction_alone_against_a_push_away_from_the_locators(block):
     # 2 N of friction for each N of a strap, at its tip and below; away from the locators along x.
     load = Load(points=(50, 30), force=300, directions=0)
@@ -146,6 +147,7 @@ def test_no_part_of_the_best_set_is_ruled_out_by_a_bound(block):
     assert not sets.can_improve(chosen[:2], 1)
 
 
+@pytest.mark.thorough
 def test_twice_the_load_asks_for_twice_the_force_and_friction_helps(block):
     load = SpatialLoad(points=[(80, 50)], force=200, directions=40, axial=-40)
     usual = search_of(block, [load]).find_best().clamp_needed

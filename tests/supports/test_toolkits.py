@@ -123,6 +123,7 @@ def test_faces_that_meet_and_the_top_of_a_boss_are_faces_of_their_own() -> None:
     assert measure_room_on([floor, inside, pocket[1], around], [], points[0]) == -3.5
 
 
+@pytest.mark.thorough
 def test_a_file_of_supports_has_the_outlines_of_carriers(tmp_path: Path) -> None:
     """A clamp with heights of its own touches the outline that is written; the file is read back and proven."""
     toolkit = Plate(pitch=10, peg_radius=3, clamp_heights=(11.0, 18.0))

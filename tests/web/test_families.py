@@ -105,6 +105,7 @@ def test_what_cannot_be_is_told(server: RunningServer, job: str) -> None:
     assert "No pattern" in client.get(f"{nothing}/family/sheets.svg").json()["error"]
 
 
+@pytest.mark.thorough
 def test_a_family_is_stopped(server: RunningServer) -> None:
     url = server.submit({"workpieces": [LONG["workpiece"]] * 2, "toolkit": LONG["toolkit"]}, "/api/families")
     assert server.client.get(f"{url}/family").json()["error"] == "The search is not over yet."
@@ -130,6 +131,7 @@ BLOCKS = [
 PLAIN = {"kind": "plain-vise", "jaw_width": 152, "jaw_height": 44, "parallels": [20, 32], "stop": "left"}
 
 
+@pytest.mark.thorough
 def test_blocks_in_a_plain_vise_have_their_own_thickness(server: RunningServer) -> None:
     """The loss is of the grip, and changes of parallels and stop are counted."""
     body = {"workpieces": BLOCKS, "toolkit": PLAIN, "thicknesses": [16, 45]}

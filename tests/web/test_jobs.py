@@ -325,6 +325,7 @@ def test_events_end_with_the_job_and_tell_its_state(server: RunningServer) -> No
     assert [event["revision"] for event in told] == sorted(event["revision"] for event in told)
 
 
+@pytest.mark.thorough
 def test_restrictions_ranking_and_tolerance_are_heeded(server: RunningServer) -> None:
     zone = [[-60, -60, 0], [0, -60, 0], [0, -10, 0], [-60, -10, 0]]
     asked = request(

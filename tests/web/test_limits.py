@@ -52,6 +52,7 @@ def test_large_files_and_requests_are_refused(small: RunningServer) -> None:
     refused(small.client.post("/api/jobs", content=bytes(20_001)), 413)
 
 
+@pytest.mark.thorough
 def test_parts_of_many_segments_are_refused(small: RunningServer) -> None:
     many = [[k, 0, 0] for k in range(20)] + [[10, 10, 0]]
     assert "21 segments" in refused(
@@ -81,6 +82,7 @@ def test_too_many_searches_of_one_address_are_refused(small: RunningServer) -> N
     assert answer.headers["retry-after"]
 
 
+@pytest.mark.thorough
 def test_only_the_best_fixtures_are_kept_and_it_is_said(small: RunningServer) -> None:
     url = small.done(request())
     state = small.client.get(url).json()
@@ -160,6 +162,7 @@ def test_what_a_search_found_is_freed_when_it_is_deleted(server: RunningServer) 
     server.wait_until(lambda: gc.collect() >= 0 and not any(one() for one in kept))
 
 
+@pytest.mark.thorough
 def test_one_stream_too_many_is_refused(small: RunningServer) -> None:
     url = small.submit(LONG)
     with small.client.stream("GET", f"{url}/events") as stream:

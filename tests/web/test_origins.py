@@ -69,6 +69,7 @@ def test_other_pages_stay_out(shared: RunningServer, origin: str) -> None:
     assert seen.headers["vary"] == "Origin"
 
 
+@pytest.mark.thorough
 def test_the_page_of_the_server_itself_is_not_shared(shared: RunningServer) -> None:
     assert not crossing(shared.client.get("/static/main.js", headers={"Origin": SHOP}).headers)
     assert not crossing(shared.client.get("/", headers={"Origin": SHOP}).headers)

@@ -117,6 +117,7 @@ def test_with_two_clamps_it_is_told_what_to_do_by_hand(server: RunningServer) ->
     assert "push the part against its locators by hand" in answer.text
 
 
+@pytest.mark.thorough
 def test_a_closing_comes_home_from_the_cage(
     server: RunningServer, place: str, result: Result, told: Seating
 ) -> None:
@@ -197,6 +198,7 @@ def test_what_there_is_not_is_404_or_409(server: RunningServer, place: str, resu
     refused(server.client.get(f"{place}/seating", params={"revision": 999}), 409)
 
 
+@pytest.mark.thorough
 def test_what_cannot_be_told_is_refused_in_the_programs_words(server: RunningServer) -> None:
     points = server.done(request(workpiece=WEDGE, toolkit={**VISE, "peg_radius": 0}))
     assert "radius 0" in refused(server.client.get(f"{points}/fixtures/1/seating"))
@@ -264,6 +266,7 @@ def test_a_closing_that_is_stopped_has_no_answer(result: Result, told: Seating) 
     assert simulate_closing(ClosingOrder(held, told, form), order) is None
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("vise", "widest"),
     [

@@ -25,6 +25,7 @@ def job(server: RunningServer) -> str:
     return server.done(ASKED)
 
 
+@pytest.mark.thorough
 def test_seats_are_listed_with_their_straps(server: RunningServer, job: str) -> None:
     """The first two have straps; of the others it is said that nobody looked for them."""
     state = server.client.get(job).json()
@@ -36,6 +37,7 @@ def test_seats_are_listed_with_their_straps(server: RunningServer, job: str) -> 
     assert rows[0]["hold"]["looked_at"] and not rows[2]["hold"]["looked_at"]
 
 
+@pytest.mark.thorough
 def test_seat_is_drawn_and_has_a_sheet(server: RunningServer, job: str) -> None:
     answer = server.client.get(f"{job}/fixtures/1")
     assert answer.status_code == 200, answer.text

@@ -53,6 +53,7 @@ def told(server: RunningServer, place: str, **form: Any) -> dict[str, Any]:
     return dict(answer.json())
 
 
+@pytest.mark.thorough
 def test_figures_are_the_programs(server: RunningServer, place: str, result: Result) -> None:
     """Forces, arm, standing and the clamp's point of each set, in its order."""
     made = found(result)
@@ -190,6 +191,7 @@ def test_none_is_said_where_there_is_none(server: RunningServer, place: str) -> 
     assert answer["sets"] == [] and "No three supports" in answer["notes"][0]
 
 
+@pytest.mark.thorough
 def test_the_description_has_an_example(server: RunningServer, place: str) -> None:
     """The example of the description can be sent as it is."""
     description = server.client.get("/api/openapi.json").json()

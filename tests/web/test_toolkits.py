@@ -89,6 +89,7 @@ def test_the_role_of_every_field_of_heights_is_told(one: DescribedToolkit) -> No
     assert {one.roles[name]: tuple(ends) for name, ends in named.items()} == made.heights
 
 
+@pytest.mark.thorough
 def test_a_preset_is_of_the_kind_that_says_most(server: RunningServer) -> None:
     """A vise of one column is a gripper; every preset is asked for as the page shows it."""
     presets = {one["name"]: one for one in server.client.get("/api/presets").json()}

@@ -46,6 +46,7 @@ def order_of_turns(clients: list[str], size: int) -> list[str]:
     return run_alone(play())
 
 
+@pytest.mark.thorough
 @given(st.lists(st.sampled_from("abc"), min_size=1, max_size=30), st.integers(1, 4))
 def test_everybody_gets_a_turn_before_anybody_gets_another(clients: list[str], size: int) -> None:
     """While several clients wait, nobody has two turns between two of another who waits; nobody is left out."""
@@ -129,6 +130,7 @@ def drips(shared: RunningServer, stack: ExitStack, address: str) -> socket.socke
     return one
 
 
+@pytest.mark.thorough
 def test_slow_uploads_of_one_client_leave_places_for_others(
     shared: RunningServer, other: httpx.Client
 ) -> None:
@@ -191,6 +193,7 @@ def test_a_proxy_is_believed_only_when_it_is_trusted(shared: RunningServer, othe
         shared.outcome(answer.json()["url"])
 
 
+@pytest.mark.thorough
 def test_a_token_lets_in_who_has_it() -> None:
     """Nothing is answered without it; the printed address gives a cookie, and programs send it as a bearer's token."""
     with running_server(token="secret-of-the-shop") as running:
@@ -214,6 +217,7 @@ def test_a_token_lets_in_who_has_it() -> None:
             assert fresh.get("/api/about").status_code == 200
 
 
+@pytest.mark.thorough
 def test_whoever_lets_others_in_is_told_what_that_means(monkeypatch: pytest.MonkeyPatch) -> None:
     """A plain warning where the page can be reached from elsewhere without a token, and only there."""
     from typer.testing import CliRunner

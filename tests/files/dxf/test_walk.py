@@ -161,6 +161,7 @@ def test_unequal_scales_turn_arcs_into_ellipses(tmp_path: Path) -> None:
     assert area(part) == pytest.approx((2400 - 25 * pi) * 6, abs=0.001 * 80)
 
 
+@pytest.mark.thorough
 def test_a_block_turned_half_way_inside_an_unequal_scale_is_skewed(tmp_path: Path) -> None:
     """Turned by 45 degrees its axes come out equally long and not square to each other: circles become ellipses."""
     document, space = new_dxf()

@@ -84,6 +84,7 @@ def shadow(body: ReadBody) -> shapely.Geometry:
     return shapely.union_all([shapely.Polygon(corners) for corners in upper])
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(3)
 @pytest.mark.parametrize("name", TOOLKITS)
 def test_pegs_and_clamps_touch_the_part_and_plates_stay_apart(name: str) -> None:
@@ -119,6 +120,7 @@ def test_what_moves_says_where_to_when_opened(name: str) -> None:
     assert freed > 0 and entered > 0
 
 
+@pytest.mark.thorough
 def test_the_same_fixture_gives_the_same_bytes() -> None:
     """No date and no order by chance; and it names its maker early, by which files of workhold are known."""
     first = fixture_glb(*held("plate"))

@@ -252,6 +252,7 @@ def test_curves_of_another_part_ask_for_no_fit(tmp_path: Path) -> None:
         read_dxf(tmp_path, draw, part_number=2)
 
 
+@pytest.mark.thorough
 def test_elliptical_arcs_of_a_path_lie_where_they_are_drawn(tmp_path: Path) -> None:
     """Half an ellipse with radii 30 and 20, turned by 90 degrees and large or small as its flags say."""
     half = '<path d="M20 50 A30 20 90 0 {} 60 50 Z"/>'

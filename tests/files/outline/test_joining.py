@@ -43,6 +43,7 @@ loops = st.integers(3, 12).flatmap(
 )
 
 
+@pytest.mark.thorough
 @settings(max_examples=60, deadline=None)
 @given(shape=loops, seed=st.integers(0, 10**6), gap=st.sampled_from([0.0, 1e-12, 1e-4]))
 @example(shape=([10.0, 45.0, 10.0], [-0.25, -0.25, 0.0]), seed=0, gap=0.0)

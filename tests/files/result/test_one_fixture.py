@@ -85,6 +85,7 @@ def test_it_is_the_one_of_the_whole_file(kind: str, name: str, made: Any) -> Non
         )
 
 
+@pytest.mark.thorough
 def test_same_holes_are_some(made: Any) -> None:
     """So that the comparison above says something."""
     assert any(fixture.listing.others for fixture in made("vise")[0])
@@ -139,6 +140,7 @@ def test_a_damaged_file_is_refused(document: Any) -> None:
     assert read_one(document(line(4, b'"pose"', b'"place"')), 3)[2].listing.rank == 3
 
 
+@pytest.mark.thorough
 def test_seating_behind_one_without_is_refused(made: Any, tmp_path: Path) -> None:
     content = json.loads((made("seating")[1] / "r.json").read_text())
     del content["fixtures"][1]["seating"]

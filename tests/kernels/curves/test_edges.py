@@ -45,6 +45,7 @@ def told(pieces: np.ndarray, mode: float) -> np.ndarray:
     return np.delete(pieces, slice(RIGHTWARD_LOW, LEFTWARD_HIGH + 1), axis=1) if mode == POSITION else pieces
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 def test_neighbouring_cells_share_their_edges(mode: float) -> None:
     """The pieces are those that each cell has by itself, to the last digit; of every curve the last edge is kept."""
@@ -62,6 +63,7 @@ def test_neighbouring_cells_share_their_edges(mode: float) -> None:
                 assert kept[curve, EDGE_LENGTH] in alone[alone[:, CURVE] == curve, HIGH]
 
 
+@pytest.mark.thorough
 def test_only_pieces_that_stand_too_far_right_are_left_out() -> None:
     """Those that do not are there as they are, and of those that do most are left out, many without an edge of their own."""
     random = Random(8)

@@ -274,6 +274,7 @@ def angle_range(one: float, two: float) -> list[float]:
     return [angle for angle in angles if abs(angle) < pi / 2]
 
 
+@pytest.mark.thorough
 def test_what_the_errors_of_the_instant_centre_allow_is_told():
     """y . P at the ends of a steady piece is enclosed with its error, and the second derivative allows for an instant
     centre that is as far off: both errors grow without bound towards a tangency."""

@@ -54,6 +54,7 @@ def parts_in_cell(reals: np.ndarray, low: float, high: float) -> list[tuple[floa
     return parts
 
 
+@pytest.mark.thorough
 @pytest.mark.thinned(4)
 @pytest.mark.parametrize("mode", [HEIGHT, POSITION])
 @pytest.mark.parametrize("width", [0.03, 0.5, 3.0, 6.2])
@@ -180,6 +181,7 @@ def test_two_branches_agree_at_their_tangency():
     assert joined > 20
 
 
+@pytest.mark.thorough
 def test_values_at_the_ends_of_pieces_are_within_their_errors():
     """The exact value at both ends of a piece, by 200 bits, lies within the error told; beside a tangency no less."""
     random = Random(35)
