@@ -35,8 +35,9 @@ def fixtures_of(path: Path) -> Result:
 
 
 def bend_all(result: Result, path: Path) -> list[Bending]:
-    shape = make_shape_to_bend(result.query, 0.0, read_part_shape(path, result.workpiece))
-    return find_bendings(result, range(len(result)), shape, BendingQuestion(find_material("aluminium-6061")))
+    asked = BendingQuestion(find_material("aluminium-6061"))
+    shape = make_shape_to_bend(result.query, asked, read_part_shape(path, result.workpiece))
+    return find_bendings(result, range(len(result)), shape, asked)
 
 
 @pytest.mark.prove

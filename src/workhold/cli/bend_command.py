@@ -159,7 +159,7 @@ def bend(
 
     query = result.query
     shape = read_part_shape(words.part, result.workpiece)
-    whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
+    whole = make_shape_to_bend(query, asked, shape)
     from workhold.bending.asking import find_bendings
 
     with (

@@ -15,7 +15,6 @@ import numpy as np
 from attrs import frozen
 from numpy.typing import NDArray
 
-from workhold.conventions import FIGURE_DECIMALS
 from workhold.errors import InputError
 from workhold.family.jaw_setups import JawSetUp, StopRange, is_stop_clear, measure_stop_range
 from workhold.family.members import FigureThreshold, Member, compute_losses
@@ -147,7 +146,9 @@ def judge_holds(
     loss = np.full(len(holds), inf)
     loss[good] = compute_losses(np.array(ranked)[good], figure)
     best = float(values[good][np.argmin(loss[good])]) if good.any() else nan
-    kept = good & np.array([keeps_thresholds(hold, thresholds) for hold in holds], np.bool_)
+    kept = good.copy()
+    for one in thresholds:
+        kept &= one.find_reaching(np.array([read_value(hold, one.figure) for hold in holds], np.float64))
     reason = ""
     if not good.any():
         reason = explain_no_hold(result, holds)
@@ -174,15 +175,6 @@ def read_value(hold: JawHold, figure: Figure) -> float:
     """Return a figure of a hold; NaN where it is not known."""
     value = getattr(hold, figure.key)
     return nan if value is None else float(value)
-
-
-def keeps_thresholds(hold: JawHold, thresholds: Sequence[FigureThreshold]) -> bool:
-    """Return whether a hold reaches every threshold; a figure that is not known reaches none."""
-    for one in thresholds:
-        value = round(read_value(hold, one.figure), FIGURE_DECIMALS)
-        if not (value >= one.value if one.figure.more_is_better else value <= one.value):
-            return False
-    return True
 
 
 def explain_no_hold(result: Result, holds: Sequence[JawHold]) -> str:

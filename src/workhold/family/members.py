@@ -36,6 +36,7 @@ from workhold.model.quality import (
     PAIR_FIGURES,
     Figure,
     find_figure_number,
+    make_figure_key,
     select_figure_column,
 )
 from workhold.model.query import Query
@@ -90,6 +91,11 @@ class FigureThreshold:
     figure: Figure
     value: float
 
+    def find_reaching(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Return (N,) booleans: whether each of the values (N,) of the figure reaches the threshold; NaN does not."""
+        rounded = np.round(values, FIGURE_DECIMALS)
+        return np.asarray(rounded >= self.value if self.figure.more_is_better else rounded <= self.value)
+
 
 def make_threshold(name: str, value: float) -> FigureThreshold:
     """Return the threshold of a figure; ``name`` is the figure's name as a user writes it.
@@ -99,7 +105,7 @@ def make_threshold(name: str, value: float) -> FigureThreshold:
     InputError
         For a name that is neither a figure of pegs nor one of flat jaws.
     """
-    number, key = find_figure_number(name), name.strip().lower().replace("-", "_").replace(" ", "_")
+    number, key = find_figure_number(name), make_figure_key(name)
     between_jaws = next((figure for figure in HOLD_FIGURES if figure.key == key), None)
     if number is None and between_jaws is None:
         raise InputError(
@@ -165,8 +171,7 @@ def are_usable(
     """
     good = np.ones(len(table), np.bool_) if with_unfit else ~are_unfit(table.quality, tolerance)
     for one in thresholds:
-        values = np.round(select_figure_column(table.quality, one.figure), FIGURE_DECIMALS)
-        good &= values >= one.value if one.figure.more_is_better else values <= one.value
+        good &= one.find_reaching(select_figure_column(table.quality, one.figure))
     return good
 
 

@@ -23,6 +23,7 @@ from attrs import define, field
 from workhold.archive import DirectoryCheckedFile
 from workhold.errors import InputError
 from workhold.files.budget import LIMITS, Budget
+from workhold.files.text import refuse_large_file
 from workhold.fixels.fields import JAW_HEIGHT, JAW_WIDTH, MAX_OPENING, PARALLELS
 
 __all__ = ["ENDING", "read_freecad_vise"]
@@ -181,13 +182,7 @@ def unpack_document(path: Path) -> bytes:
     limits = LIMITS["freecad"]
     most = limits.most_bytes or 0
     try:
-        if not path.is_file():
-            raise InputError("this is not a file: give a FreeCAD file with a vise.")
-        if path.stat().st_size > most:
-            raise InputError(
-                f"the file has {path.stat().st_size / 1e6:.0f} MB, more than the {most / 1e6:g} MB of {limits.what}: "
-                f"{limits.remedy}."
-            )
+        refuse_large_file(path, limits)
         with DirectoryCheckedFile(path) as stream, ZipFile(stream) as archive:
             content = bytearray()
             with archive.open(DOCUMENT) as member:

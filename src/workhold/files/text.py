@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 from workhold.errors import InputError
 from workhold.files.budget import FileLimits
 
-__all__ = ["parse_json", "read_at_most", "read_limited", "read_text", "parse_toml"]
+__all__ = ["parse_json", "read_at_most", "read_limited", "read_text", "refuse_large_file", "parse_toml"]
 
 # Floats end at 1.8e308.
 MOST_DIGITS = 308
@@ -48,6 +48,22 @@ def read_text(path: Path, limits: FileLimits, saved: str = "save it as UTF-8") -
         raise InputError(f"the file is not UTF-8 text (byte {error.start}, line {line}): {saved}.") from error
 
 
+def refuse_large_file(path: Path, limits: FileLimits) -> None:
+    """Raise InputError, without the file's name, when there is no such file or it has more bytes than ``limits`` allow.
+
+    Raises OSError or ValueError where the system cannot tell.
+    """
+    if not path.exists():
+        raise InputError("there is no file of that name.")
+    if not path.is_file():
+        raise InputError(f"this is not a file: give {limits.what}.")
+    size, most = path.stat().st_size, limits.most_bytes
+    if most is not None and size > most:
+        raise InputError(
+            f"the file has {size / 1e6:.0f} MB, more than the {most / 1e6:g} MB of {limits.what}: {limits.remedy}."
+        )
+
+
 def read_limited(path: Path, limits: FileLimits) -> bytes:
     """Return the content of a file.
 
@@ -61,17 +77,8 @@ def read_limited(path: Path, limits: FileLimits) -> bytes:
         Without the file's name: when it cannot be read, or is too large.
     """
     try:
-        if not path.exists():
-            raise InputError("there is no file of that name.")
-        if not path.is_file():
-            raise InputError(f"this is not a file: give {limits.what}.")
-        size = path.stat().st_size
+        refuse_large_file(path, limits)
         most = limits.most_bytes
-        if most is not None and size > most:
-            raise InputError(
-                f"the file has {size / 1e6:.0f} MB, more than the {most / 1e6:g} MB of {limits.what}: "
-                f"{limits.remedy}."
-            )
         content = read_at_most(path, most)
         if most is not None and len(content) > most:
             raise InputError(f"the file grows while it is read: give {limits.what} that is finished.")

@@ -21,7 +21,7 @@ from attrs import field, frozen
 
 from workhold.errors import InputError
 from workhold.model.first_choice import has_house_order
-from workhold.model.quality import Figure
+from workhold.model.quality import Figure, make_figure_key
 
 __all__ = [
     "HOLD_FIGURES",
@@ -73,7 +73,7 @@ def choose_hold_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
     >>> choose_hold_ranking(["clamp-needed", "grip"])
     ('clamp_needed', 'grip')
     """
-    keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or HOLD_RANKING]
+    keys = [make_figure_key(name) for name in names or HOLD_RANKING]
     if has_house_order(keys) or keys == ["warnings"]:
         return HOLD_RANKING
     figures = {figure.key: figure.option for figure in HOLD_FIGURES}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import inf
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from attrs import evolve, frozen
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from workhold.errors import InputError
 from workhold.model.elastic_material import ElasticMaterial
-from workhold.model.quality import Figure
+from workhold.model.quality import Figure, make_figure_key
 from workhold.units import Unit
 
 __all__ = [
@@ -63,7 +63,7 @@ def find_bending_figure(name: str) -> Figure:
     >>> find_bending_figure("clamp-distortion").key
     'clamp_distortion'
     """
-    key = name.strip().lower().replace("-", "_").replace(" ", "_")
+    key = make_figure_key(name)
     for figure in BENDING_FIGURES:
         if figure.key == key:
             return figure
@@ -124,7 +124,28 @@ class PadsBelow:
 
 
 @frozen
-class BentPlace:
+class PlacedFigure:
+    """A figure with its error estimate, and the place (x, y, z) in mm, in the part's coordinates, that it is of."""
+
+    value: float
+    error: float
+    at: tuple[float, ...]
+
+    @property
+    def rounded(self) -> Self:
+        """The same with six digits, and the place to 1e-6 mm, as files have it."""
+        return evolve(
+            self, value=round_figure(self.value), error=round_figure(self.error), at=round_place(self.at)
+        )
+
+    def to_rounded_data(self, unit: str) -> dict[str, Any]:
+        """Return value, error, unit and place as plain data, rounded as files have them."""
+        told = self.rounded
+        return {"value": told.value, "error": told.error, "unit": unit, "at": list(told.at)}
+
+
+@frozen
+class BentPlace(PlacedFigure):
     """The largest movement of one kind (by clamping, or at the cutter), and where it is.
 
     Parameters
@@ -137,19 +158,9 @@ class BentPlace:
     load : number, from 1, of the load that causes the movement; None otherwise.
     """
 
-    value: float
-    error: float
-    at: tuple[float, ...]
     line: int | None = None
     tool: int | None = None
     load: int | None = None
-
-    @property
-    def rounded(self) -> BentPlace:
-        """The same with six digits, and the place to 1e-6 mm, as files have it."""
-        return evolve(
-            self, value=round_figure(self.value), error=round_figure(self.error), at=round_place(self.at)
-        )
 
     def describe(self, unit: Unit) -> str:
         """Return size, error and place as text, with lengths in the unit."""
@@ -164,19 +175,11 @@ class BentPlace:
 
     def to_data(self) -> dict[str, Any]:
         """Return plain data, rounded as files have it; lengths in mm."""
-        return {
-            "value": round_figure(self.value),
-            "error": round_figure(self.error),
-            "unit": "mm",
-            "at": list(round_place(self.at)),
-            "line": self.line,
-            "tool": self.tool,
-            "load": self.load,
-        }
+        return self.to_rounded_data("mm") | {"line": self.line, "tool": self.tool, "load": self.load}
 
 
 @frozen
-class LargestStress:
+class LargestStress(PlacedFigure):
     """The largest von Mises stress on the surface under clamping, and its place. Pressed patches do not
     count.
 
@@ -188,17 +191,6 @@ class LargestStress:
     at : (x, y, z) in mm, in the part's coordinates.
     """
 
-    value: float
-    error: float
-    at: tuple[float, ...]
-
-    @property
-    def rounded(self) -> LargestStress:
-        """The same with six digits, and the place to 1e-6 mm, as files have it."""
-        return evolve(
-            self, value=round_figure(self.value), error=round_figure(self.error), at=round_place(self.at)
-        )
-
     def describe(self, unit: Unit) -> str:
         """Return size, error and place as text, with lengths and stresses in the unit."""
         place = ", ".join(unit.format_number(value, unit.decimals - 1) for value in self.at)
@@ -207,12 +199,7 @@ class LargestStress:
 
     def to_data(self) -> dict[str, Any]:
         """Return plain data, rounded as files have it; stresses in MPa, lengths in mm."""
-        return {
-            "value": round_figure(self.value),
-            "error": round_figure(self.error),
-            "unit": "MPa",
-            "at": list(round_place(self.at)),
-        }
+        return self.to_rounded_data("MPa")
 
 
 @frozen(kw_only=True)

@@ -64,6 +64,7 @@ __all__ = [
     "find_ranked_number",
     "fill_figure_rows",
     "to_words",
+    "make_figure_key",
 ]
 
 # Digits of figures that others come after in an order.
@@ -317,6 +318,17 @@ def find_figure_number(name: str) -> int | None:
     return None if number is None or number >= len(FIGURES) else number
 
 
+def make_figure_key(name: str) -> str:
+    """Return the key that a figure's name, as a user writes it, stands for.
+
+    Hyphens, underscores and spaces mean the same.
+
+    >>> make_figure_key("Location error")
+    'location_error'
+    """
+    return name.strip().lower().replace("-", "_").replace(" ", "_")
+
+
 def find_ranked_number(name: str) -> int | None:
     """Return the index in :data:`RANKED` of a figure's name; None where it is not among them.
 
@@ -325,7 +337,7 @@ def find_ranked_number(name: str) -> int | None:
     >>> RANKED[find_ranked_number("capture opening")].option
     'capture-opening'
     """
-    key = name.strip().lower().replace("-", "_").replace(" ", "_")
+    key = make_figure_key(name)
     return next((number for number, figure in enumerate(RANKED) if figure.key == key), None)
 
 

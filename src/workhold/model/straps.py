@@ -20,7 +20,7 @@ from workhold.fixels.strap_set import USUAL_STANDOUT, StrapSet
 from workhold.limits import convert_real, refuse_long
 from workhold.model.first_choice import has_house_order
 from workhold.model.jaw_hold import ProgramJawForce, find_largest_force
-from workhold.model.quality import Figure
+from workhold.model.quality import Figure, make_figure_key
 
 __all__ = [
     "MOST_STRAPS",
@@ -72,7 +72,7 @@ def choose_strap_ranking(names: Sequence[str] | None) -> tuple[str, ...]:
     >>> choose_strap_ranking(["location-error"])
     ('location_error',)
     """
-    keys = [name.strip().lower().replace("-", "_").replace(" ", "_") for name in names or STRAP_RANKING]
+    keys = [make_figure_key(name) for name in names or STRAP_RANKING]
     if has_house_order(keys) or keys == ["warnings"]:
         return STRAP_RANKING
     known = (*STRAP_RANKING, *SEAT_FIGURES)

@@ -43,15 +43,13 @@ __all__ = [
 ]
 
 
-def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> PartToBend:
+def make_shape_to_bend(query: Query, asked: BendingQuestion, shape: PartShape | None) -> PartToBend:
     """Return the shape to bend of a query's part: ``shape`` from its STEP file, or if that is None a prism.
-
-    ``height`` is the prism's in mm.
 
     Raises
     ------
     InputError
-        For a part that was read from a solid, if ``shape`` is None.
+        For a part that was read from a solid, if ``shape`` is None, and where nothing gives the prism's height.
     """
     if shape is not None:
         return KeptShape(shape.kept)
@@ -59,7 +57,26 @@ def make_shape_to_bend(query: Query, height: float, shape: PartShape | None) -> 
         raise InputError(
             "how far a solid bends depends on all of its shape, which a result does not have: give its STEP file as well."
         )
-    return PrismShape(query.workpiece, height)
+    return PrismShape(query.workpiece, asked.find_part_height(query))
+
+
+def make_question(
+    material: str | ElasticMaterial,
+    thickness: float | None,
+    jaw_force: float | None,
+    jaw: str | float,
+    faces: Sequence[int | str],
+) -> BendingQuestion:
+    """Return a question of bending from arguments as :meth:`workhold.Fixture.bending` takes them."""
+    known = find_material(material) if isinstance(material, str) else material
+    return BendingQuestion(known, thickness, jaw_force, tuple(faces), read_jaw_stiffness(jaw))
+
+
+def find_bending(fixture: Fixture, asked: BendingQuestion, shape: PartShape | None) -> Bending:
+    """Return how far one fixture bends its part; ``shape`` as for :func:`make_shape_to_bend`."""
+    listed = fixture.listing
+    whole = make_shape_to_bend(listed.result.query, asked, shape)
+    return find_bendings(listed.result, [listed.row], whole, asked)[0]
 
 
 def find_pads_below(
@@ -121,18 +138,9 @@ def compute_bending(
         below[listed.row] = find_pads_below(supports, best, shape, clamp_force)
     if straps is not None and supports is not None:
         raise InputError("straps press the part on their own supports: leave one of straps and supports out.")
-    asked = BendingQuestion(
-        find_material(material) if isinstance(material, str) else material,
-        thickness,
-        jaw_force,
-        tuple(faces),
-        read_jaw_stiffness(jaw),
-        below,
-        {} if straps is None else {listed.row: straps},
-    )
-    query = listed.result.query
-    whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
-    return find_bendings(listed.result, [listed.row], whole, asked)[0]
+    asked = make_question(material, thickness, jaw_force, jaw, faces)
+    held = {} if straps is None else {listed.row: straps}
+    return find_bending(fixture, evolve(asked, below=below, straps=held), shape)
 
 
 def bend_result(
@@ -148,20 +156,13 @@ def bend_result(
     part: str | Path | None = None,
 ) -> Result:
     """Return a result with how far its best fixtures bend their part, see :meth:`workhold.Result.bend`."""
-    asked = BendingQuestion(
-        find_material(material) if isinstance(material, str) else material,
-        thickness,
-        jaw_force,
-        tuple(faces),
-        read_jaw_stiffness(jaw),
-    )
+    asked = make_question(material, thickness, jaw_force, jaw, faces)
     if type(best) is not int or best < 1:
         raise InputError(f"best {best!r} is not a number of fixtures: give a whole number from 1.")
     rows = list_rows_to_bend(result, best)
     key = None if rank_by is None else find_bending_figure(rank_by).key
     shape = read_part_shape(part, result.workpiece)
-    whole = make_shape_to_bend(result.query, asked.find_part_height(result.query), shape)
-    found = find_bendings(result, rows, whole, asked)
+    found = find_bendings(result, rows, make_shape_to_bend(result.query, asked, shape), asked)
     return result.add_bending({row: one.to_figures() for row, one in zip(rows, found, strict=True)}, key)
 
 
@@ -205,12 +206,10 @@ def find_sheet_bending(
     told = fixture.bent
     if settings.get("material") is not None or told is None:
         return compute_sheet_bending(fixture, settings, shape)
-    listed = fixture.listing
-    below = {} if told.below is None else {listed.row: told.below}
+    below = {} if told.below is None else {fixture.listing.row: told.below}
     asked = BendingQuestion(told.material, told.thickness, told.jaw_force, told.faces, told.stiffness, below)
     try:
-        whole = make_shape_to_bend(listed.result.query, told.thickness, shape)
-        drawn = find_bendings(listed.result, [listed.row], whole, asked)[0]
+        drawn = find_bending(fixture, asked, shape)
     except InputError:
         return told
     return evolve(drawn, **{one.name: getattr(told, one.name) for one in fields(BendingFigures)})
@@ -228,16 +227,10 @@ def compute_sheet_bending(
     """
     if settings.get("material") is None:
         return None
-    listed = fixture.listing
-    asked = BendingQuestion(
-        find_material(settings["material"]),
-        settings["thickness"],
-        settings["jaw_force"],
-        stiffness=read_jaw_stiffness(settings["jaw"]),
+    asked = make_question(
+        settings["material"], settings["thickness"], settings["jaw_force"], settings["jaw"], ()
     )
-    query = listed.result.query
-    whole = make_shape_to_bend(query, asked.find_part_height(query), shape)
-    return find_bendings(listed.result, [listed.row], whole, asked)[0]
+    return find_bending(fixture, asked, shape)
 
 
 def make_bent_mesh(bending: Bending, pose: Pose) -> Mesh:

@@ -86,11 +86,15 @@ def test_two_clamps_push_in_pairs_of_directions(walk: Walk) -> None:
     assert len(walk.holes()) == 5 and walk.shown()["theta_deg"] % 90 == 0
     # Each clamp's length has its name, and room in the drawing.
     assert page.inner_text("#pose-words").startswith("Clamp ")
-    frame = page.locator("#drawing-fixture").bounding_box()
-    words = [word.bounding_box() for word in page.locator("#drawing-fixture .dimension-text").all()]
-    assert frame and len(words) == 2
-    for box in words:
-        assert box and frame["x"] <= box["x"] and box["x"] + box["width"] <= frame["x"] + frame["width"]
+    walk.seen("#drawing-fixture .dimension-text")
+    # Measured at once: a drawing may be put in the place of another meanwhile.
+    frame, *words = page.evaluate(
+        """() => [...document.querySelectorAll("#drawing-fixture, #drawing-fixture .dimension-text")]
+            .map((one) => one.getBoundingClientRect()).map(({ left, right }) => [left, right])"""
+    )
+    assert frame[0] < frame[1] and len(words) == 2
+    for left, right in words:
+        assert left < right and frame[0] <= left and right <= frame[1]
     page.click("#push")
     walk.seen("#bars .bar:nth-child(5)")
     seats = walk.count()
