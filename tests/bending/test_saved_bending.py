@@ -247,3 +247,18 @@ def test_the_command_writes_what_python_computes(
     sheet = tmp_path / "sheet.svg"
     assert CliRunner().invoke(app, ["sheet", str(out), "1", "-o", str(sheet)]).exit_code == 0
     assert "Ring: most." in sheet.read_text() and "These figures are" not in sheet.read_text()
+
+
+def test_figures_in_files_have_six_digits() -> None:
+    place = {"value": 0.333333, "error": 0.0666667, "at": [1.333333, -0.1, 0.0]}
+    told = BentPlace(1 / 3, 1 / 15, (4 / 3, -0.1, -1e-9), load=2)
+    assert told.to_data() == place | {"unit": "mm", "line": None, "tool": None, "load": 2}
+    assert told.rounded == BentPlace(0.333333, 0.0666667, (1.333333, -0.1, 0.0), load=2)
+    assert LargestStress(1 / 3, 1 / 15, (4 / 3, -0.1, -1e-9)).to_data() == place | {"unit": "MPa"}
+
+
+def test_a_question_has_all_that_is_given() -> None:
+    asked = bent.make_question("brass", 8.0, 2000.0, 0.5, ["top", 3])
+    assert (asked.thickness, asked.jaw_force, asked.faces, asked.stiffness) == (8.0, 2000.0, ("top", 3), 0.5)
+    assert asked.material == find_material("brass") and not asked.below and not asked.straps
+    assert bent.make_question(asked.material, None, None, "screw", ()).material is asked.material

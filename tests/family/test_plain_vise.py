@@ -447,3 +447,19 @@ def test_files_are_written(tmp_path):
     assert "Set-up 1 of 1" in (tmp_path / "f.svg").read_text()
     with pytest.raises(InputError, match="let the name end in"):
         family.save_sheets(tmp_path / "f.txt")
+
+
+def test_a_figure_reaches_a_threshold_up_to_rounding() -> None:
+    values = np.array([6.0 - 1e-12, 6.0, 6.0 + 1e-12, 6.1, 5.9, np.nan])
+    assert make_threshold("grip", 6.0).find_reaching(values).tolist() == [
+        True,
+        True,
+        True,
+        True,
+        False,
+        False,
+    ]
+    assert make_threshold("clamp needed", 6.0).find_reaching(values).tolist() == [
+        *(True, True, True, False, True),
+        False,
+    ]
